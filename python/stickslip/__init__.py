@@ -15,6 +15,7 @@ try:
     from .program import AccuracyWarning, BadInput, Cancelled, OutOfMemory, ProgramError, TimedOut, Unsolved, find_program
     from .records import Record, read_record
     from .results import Density, Result, Results
+    from .sliding_block import newmark
     from .sweeps import Sweep
     from .version import __version__
 except ImportError as problem:
@@ -23,7 +24,7 @@ except ImportError as problem:
     raise
 
 __all__ = ["AccuracyWarning", "BadInput", "Cancelled", "Density", "OutOfMemory", "ProgramError", "Record", "Result",
-           "Results", "Sweep", "TimedOut", "Unsolved", "__version__", "find_program", "fit", "load", "map", "noise",
+           "Results", "Sweep", "TimedOut", "Unsolved", "__version__", "find_program", "fit", "load", "map", "newmark", "noise",
            "plots", "read_record", "run", "sweep"]
 
 

@@ -1,9 +1,11 @@
 """python3 -m stickslip plot FILE... [PICTURE.png]: draws what files of the program hold.
 python3 -m stickslip explore [SCENE.opts]: sliders over the model parameters, pictures that follow.
 python3 -m stickslip levels FILE: the levels of a measured force, for -noise file.
-python3 -m stickslip force FILE: a measured force or acceleration, for -force_file."""
+python3 -m stickslip force FILE: a measured force or acceleration, for -force_file.
+python3 -m stickslip newmark FILE --yield 0.1g: a block that slides on shaking ground."""
 
 import argparse
+import dataclasses
 import pathlib
 import re
 import sys
@@ -34,11 +36,15 @@ FORCE = """Writes a measured force or acceleration, in any of the formats of sti
 -force_file takes. Accelerations in g, gal and the like become m/s^2. Prints what was
 read, and the options of the program that use it. Without --output the file is FILE_force.csv in this folder."""
 
+NEWMARK = """The sliding block of Newmark (1965) on ground that accelerates as FILE says, in any of the formats of
+stickslip.read_record. Prints its displacement and its slips, and writes its path to FILE_newmark.csv and a picture to
+FILE_newmark.png in this folder. Positive is the direction of positive accelerations."""
+
 
 def main(words: Sequence[str] | None = None) -> int:
     """The command line; returns the exit status."""
     parser = argparse.ArgumentParser(prog="python3 -m stickslip", description=__doc__)
-    commands = parser.add_subparsers(required=True, metavar="plot | explore | levels | force")
+    commands = parser.add_subparsers(required=True, metavar="plot | explore | levels | force | newmark")
     plot = commands.add_parser(
         "plot", usage="%(prog)s [--kind KIND] FILE... [PICTURE | -o PICTURE]", description=TEXT)
     plot.add_argument("files", nargs="+", type=pathlib.Path, metavar="FILE")
@@ -67,6 +73,13 @@ def main(words: Sequence[str] | None = None) -> int:
     _add_record(force)
     force.add_argument("-o", "--output", type=pathlib.Path, metavar="CSV", help="the file to write")
     force.set_defaults(act=write_force)
+    newmark = commands.add_parser("newmark", description=NEWMARK)
+    _add_record(newmark)
+    newmark.add_argument("--yield", required=True, dest="yield_acceleration", metavar="ACCELERATION",
+                         help="at which the block starts to slide, such as 0.1g, or a number in the unit of the record")
+    newmark.add_argument("--one-way", action="store_true", help="the block slides in the positive direction alone, as "
+                         "downhill; the displacement of the record with its sign reversed is printed too")
+    newmark.set_defaults(act=slide_block)
     words = list(sys.argv[1:] if words is None else words)
     given = taken_options(words) if words[:1] == ["explore"] else {}
     arguments = parser.parse_args(words, argparse.Namespace(given=given))
@@ -94,6 +107,7 @@ def _add_record(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--column", help="name of the values, or its number from 0")
     parser.add_argument("--channel", help='words of the name of a channel, such as "90 Deg", in the place of --column')
     parser.add_argument("--time", help="name of the times, or its number from 0")
+    parser.add_argument("--vertical", help="name of vertical accelerations, or their number from 0, which change friction")
     parser.add_argument("--step", type=float, help="sampling interval in seconds, where the file has no times")
     parser.add_argument("--unit", help="of the values, such as g, gal or m/s^2, where the file does not say")
     parser.add_argument("--time-unit", help="of the times, such as ms, where the file does not say")
@@ -112,8 +126,14 @@ def _add_record(parser: argparse.ArgumentParser) -> None:
 def _record_of(arguments: argparse.Namespace) -> "Record":
     """The record that `_add_record` describes."""
     from . import read_record
-    record = read_record(arguments.file, **{name: getattr(arguments, name) for name in (
-        "column", "channel", "time", "step", "unit", "time_unit", "layout", "differentiate")})
+
+    def read(column: str | None, channel: str | None) -> "Record":
+        return read_record(arguments.file, column=column, channel=channel, **{name: getattr(arguments, name) for name in (
+            "time", "step", "unit", "time_unit", "layout", "differentiate")})
+
+    record = read(arguments.column, arguments.channel)
+    if arguments.vertical is not None:
+        record = dataclasses.replace(record, vertical=read(arguments.vertical, None).value)
     record = record.between(*arguments.between) if arguments.between else record
     record = record.resampled(record.step, across=arguments.fill) if arguments.fill else record
     record = record.centred() if arguments.centre else record
@@ -133,6 +153,11 @@ def levels_command() -> int:
 def force_command() -> int:
     """The console script stickslip-force."""
     return main(["force", *sys.argv[1:]])
+
+
+def newmark_command() -> int:
+    """The console script stickslip-newmark."""
+    return main(["newmark", *sys.argv[1:]])
 
 
 def plot_command() -> int:
@@ -211,6 +236,20 @@ def write_force(arguments: argparse.Namespace, record: "Record") -> None:
                          f"{end - begin:g} joins them by straight lines, --between takes a part without them")
     record.save(place)
     print(record, f"-quantities given_force -force_file {place}", sep="\n")
+
+
+@write_of_record
+def slide_block(arguments: argparse.Namespace, record: "Record") -> None:
+    """Slides a block under a record, or its reverse too where it slides one way."""
+    from .sliding_block import newmark, table
+    path, picture = (f"{arguments.file.stem}_newmark.{ending}" for ending in ("csv", "png"))
+    found = newmark(record, arguments.yield_acceleration, arguments.one_way, trajectory=path)
+    print(record, table(found), sep="\n")
+    if arguments.one_way:
+        reverse = newmark(record.scaled(-1), arguments.yield_acceleration, True)
+        print("with the sign of the record reversed:", reverse["final_displacement"])
+    found.plot(picture)
+    print(path, picture, sep="\n")
 
 
 def plot_files(arguments: argparse.Namespace) -> int:

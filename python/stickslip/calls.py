@@ -70,6 +70,8 @@ def run(*, ranks: int = 0, timeout: float | None = None, keep: Path | None = Non
     -----
     AccuracyWarning
         If the accuracy was not reached; the results are there, with their errors.
+    UserWarning
+        Of what the program warns of, which `results.warnings` has too.
 
     Examples
     --------
@@ -100,6 +102,8 @@ def _run(ranks: int, timeout: float | None, keep: Path | None, program: Path | N
             prefix = "the program wrote no results: " if kind is ProgramError else ""
             raise kind(prefix + finished.message())
         found = found_in(json.loads(summary.read_text()), options.get("output"))
+    for text in found.warnings:
+        warnings.warn(text, UserWarning, stacklevel=3)
     if finished.status != DONE:
         warnings.warn(shortfall(found) or finished.message(), AccuracyWarning, stacklevel=3)
     return found
@@ -195,6 +199,8 @@ def sweep(*, ranks: int = 0, timeout: float | None = None, keep: Path | None = N
     -----
     AccuracyWarning
         If points failed or did not reach the accuracy.
+    UserWarning
+        Of what the program warns of; `point_warnings` has it by point.
 
     Examples
     --------

@@ -239,6 +239,8 @@ def map(cases: Iterable[Mapping[str, Any]], workers: int = 2, *, failures: str =
     -----
     AccuracyWarning
         If cases did not reach the accuracy.
+    UserWarning
+        Of what the program warns of, once for all cases of which it says the same.
 
     Examples
     --------
@@ -259,6 +261,12 @@ def map(cases: Iterable[Mapping[str, Any]], workers: int = 2, *, failures: str =
         found = pool.results([{**common, **case} for case in cases], failures == "raise", _teller(progress))
     if failures == "raise" and found and isinstance(found[-1], Exception):
         raise type(found[-1])(f"case {len(found) - 1}: {found[-1]}") from None
+    warned: dict[str, list[int]] = {}
+    for n, one in enumerate(found):
+        for text in one.warnings if isinstance(one, Results) else ():
+            warned.setdefault(text, []).append(n)
+    for text, (first, *more) in warned.items():
+        warnings.warn(f"case {first}{f' and {len(more)} more' * bool(more)}: {text}", UserWarning, stacklevel=2)
     short = [f"case {n}: {shortfall(one)}" for n, one in enumerate(found)
              if isinstance(one, Results) and one.summary["status"] != DONE]
     if short:

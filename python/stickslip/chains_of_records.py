@@ -10,6 +10,7 @@ from .chains import Chain
 from .needed import needed
 from .record_statistics import MATCH, SWING, Memory, measured, memory_of, spectrum_of, unsteady
 from .records import Record
+from .ways_of_records import Unfit, advised
 
 if TYPE_CHECKING:
     import numpy
@@ -72,6 +73,7 @@ class Fit:
         return "\n".join([*lines, "rates are those counted" if self.factor == 1 else matched])
 
 
+@advised
 def record(record: Record, levels: int | Sequence[float] | None = None, *, mu_s: float | None = None,
            jumps: str = "neighbours", match_time: bool | None = None, longest: float | None = None,
            confidence: float = 0.95) -> Chain:
@@ -128,22 +130,21 @@ def record(record: Record, levels: int | Sequence[float] | None = None, *, mu_s:
     for asked in TRIED if levels is None else (levels,):
         x = _levels(record, asked, mu_s)
         try:
-            spent, counts, far = _counted(record, x, jumps, levels is None)
+            spent, counts, far = _counted(record, x, jumps)
             break
         except _TooFew as few:
             problem = few
     else:
         swings = -memory.rho.min() > SWING
-        raise ValueError(f"{problem}; its autocorrelation swings to {memory.rho.min():.2f}: narrow_band_of(record) may "
-                         "fit" if swings else str(problem)) from None
+        raise Unfit(f"{problem}" + f"; its autocorrelation swings to {memory.rho.min():.2f}" * bool(swings))
     rates = counts / spent[:, None]
     rough = Chain(x, rates, f"levels of {record.source or 'a record'}")
     if match_time is None:
         match_time = not numpy.isin(record.value, x).all()
     factor = rough.correlation_time / time if match_time else 1.0
     if not 1 / MOST <= factor <= MOST:
-        raise ValueError(f"match_time: would multiply all rates by {factor:.3g}, beyond [1/{MOST:g}, {MOST:g}]; take other "
-                         "levels, a record that is sampled more finely, or match_time=False")
+        raise Unfit(f"match_time: would multiply all rates by {factor:.3g}, beyond [1/{MOST:g}, {MOST:g}], as a record does "
+                    "that is sampled too coarsely for its levels")
     frequencies, power = spectrum_of(record, memory)
     chain = dataclasses.replace(rough, rates=rates * factor, meant=measured(memory, frequencies, power))
     neighbours = numpy.eye(len(x), k=1) + numpy.eye(len(x), k=-1)
@@ -154,11 +155,11 @@ def record(record: Record, levels: int | Sequence[float] | None = None, *, mu_s:
               error, _bands(chain, frequencies, power, memory), factor)
     notes = (*_misfits(fit), *unsteady(record))
     for note in notes:
-        warnings.warn(note, UserWarning, stacklevel=2)
+        warnings.warn(note, UserWarning, stacklevel=3)
     return dataclasses.replace(chain, fit=fit, notes=(*str(fit).splitlines(), *notes))
 
 
-class _TooFew(ValueError):
+class _TooFew(Unfit):
     """A jump with too few counts."""
 
 
@@ -167,13 +168,12 @@ def _correlation_time(memory: Memory) -> tuple[float, float]:
     autocorrelation of such a chain is a sum of decaying exponentials with positive weights."""
     integral, size = memory.integral(memory.rho), memory.integral(abs(memory.rho))
     lowest = int(memory.rho.argmin())
-    advice = ("narrow_band_of(record) fits a band; of a shaking that ends, take a part by record.between()")
     if -memory.rho[lowest] > SWING + 3 * memory.error:
-        raise ValueError(f"record: its autocorrelation swings to {memory.rho[lowest]:.2f} at {memory.time[lowest]:.3g} and "
-                         f"has the integral {integral:.2g}, that of a chain of levels stays positive; {advice}")
+        raise Unfit(f"record: its autocorrelation swings to {memory.rho[lowest]:.2f} at {memory.time[lowest]:.3g} and "
+                    f"has the integral {integral:.2g}, that of a chain of levels stays positive")
     if integral < FLAT * size:
-        raise ValueError(f"record: the integral of its autocorrelation is {integral:.2g}, of its size {size:.2g}: about "
-                         f"zero or negative, that of a chain of levels is positive; {advice}")
+        raise Unfit(f"record: the integral of its autocorrelation is {integral:.2g}, of its size {size:.2g}: about zero or "
+                    "negative, that of a chain of levels is positive")
     return integral, integral * math.sqrt(4 * memory.time[-1] / memory.duration)
 
 
@@ -201,7 +201,7 @@ def _levels(record: Record, levels: int | Sequence[float], mu_s: float | None) -
     return numpy.unique(numpy.quantile(record.value, stats.norm.cdf(scores)))
 
 
-def _counted(record: Record, x: "Array", jumps: str, chosen: bool) -> "tuple[Array, Array, float]":
+def _counted(record: Record, x: "Array", jumps: str) -> "tuple[Array, Array, float]":
     """Time on each level, jumps between them, and the share of jumps over more than one."""
     spent, direct = numpy.zeros(len(x)), numpy.zeros((len(x), len(x)))
     for piece in record.stretches():
@@ -217,18 +217,16 @@ def _counted(record: Record, x: "Array", jumps: str, chosen: bool) -> "tuple[Arr
     for k, to in zip(*direct.nonzero()) if jumps == "neighbours" else ():
         passed = numpy.arange(k, to, 1 if to > k else -1)
         counts[passed, passed + (1 if to > k else -1)] += direct[k, to]
-    fix = ("take a longer record, or levels that it reaches" if chosen else
-           "take fewer levels, or those that the record reaches, or a longer record")
     for n, level in enumerate(x):
         ways = {"away": counts[n].sum()} if jumps == "any" else {
             name: counts[n, n + way] for name, way in (("up", 1), ("down", -1)) if 0 <= n + way < len(x)}
         for way, number in ways.items():
             if number < FEWEST:
                 raise _TooFew(f"levels: {number:g} jumps from level {level:.4g} {way} of {len(x)} levels are too few to "
-                              f"count, {FEWEST} are needed; {fix}")
+                              f"count, {FEWEST} are needed")
     if jumps == "neighbours" and far > FAR:
-        raise ValueError(f"levels: {100 * far:.2g} % of the jumps lead over more than one level, of {len(x)}; sample more "
-                         "finely, take fewer levels, or jumps=\"any\" where the force does jump")
+        raise Unfit(f"levels: {100 * far:.2g} % of the jumps lead over more than one level, of {len(x)}: it jumps, or is "
+                    "sampled too coarsely for these levels")
     return spent, counts, far
 
 
@@ -258,7 +256,7 @@ def _misfits(fit: Fit) -> list[str]:
         fix = ("compare other levels" if fit.factor != 1 else
                f"match_time=True multiplies all rates by {fit.correlation_time[0] / fit.correlation_time[1]:.3g}")
         if off > max(math.log(WRONG), 3 * error):
-            raise ValueError(f"record: {said}; {fix}")
+            raise Unfit(f"record: {said}")
         if off > max(math.log(MATCH), 2 * error):
             found.append(f"{said}; {fix}")
     return found

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 from .needed import needed
 from .record_statistics import SWING, Memory, jackknife, memory_of, unsteady
 from .records import Record
+from .ways_of_records import Unfit, advised
 
 if TYPE_CHECKING:
     import numpy
@@ -62,6 +63,7 @@ def autocorrelation(t: "Array", frequency: float, damping: float) -> "Array":
     return numpy.exp(-damping * frequency * t) * (numpy.cos(root * frequency * t) + k * numpy.sin(root * frequency * t))
 
 
+@advised
 def filtered_of(record: Record, *, longest: float | None = None) -> Filtered:
     """The filtered noise whose autocorrelation is closest to that of a record, by least squares.
 
@@ -88,17 +90,14 @@ def filtered_of(record: Record, *, longest: float | None = None) -> Filtered:
     (deviation, frequency, damping), errors = jackknife(record, whole, _closest)
     misfit = float(abs(whole.rho - autocorrelation(whole.time, frequency, damping)).max())
     if misfit > SWING + 3 * whole.error:
-        raise ValueError(f"record: its autocorrelation leaves that of filtered noise by {misfit:.2f}; narrow_band_of(record) "
-                         "fits a band, record(record) makes levels; of a shaking that ends, take record.between()")
+        raise Unfit(f"record: its autocorrelation leaves that of filtered noise by {misfit:.2f}")
     if damping > MOST:
-        raise ValueError("record: its autocorrelation decays without a swing, as that of no ground does; record(record) makes "
-                         "levels")
+        raise Unfit("record: its autocorrelation decays without a swing, as that of no ground does")
     if frequency < SURE * errors[1]:
-        raise ValueError(f"record: is too short to show a frequency of the ground: {frequency:.3g} +- {errors[1]:.1g}; take "
-                         "a longer one")
+        raise Unfit(f"record: is too short to show a frequency of the ground: {frequency:.3g} +- {errors[1]:.1g}")
     doubts, mean = unsteady(record), float(record.value.mean())
     for note in doubts:
-        warnings.warn(note, UserWarning, stacklevel=2)
+        warnings.warn(note, UserWarning, stacklevel=3)
     left = [f"the mean of the record, {mean:.3g}, is left out: -bias takes it, centred() takes it off"]
     return Filtered(deviation, frequency, damping, errors, misfit, (*doubts, *left * (abs(mean) > MEAN * deviation)))
 

@@ -9,6 +9,7 @@ from .chains_by_name import narrow_band, positive
 from .needed import needed
 from .record_statistics import MATCH, SWING, Memory, jackknife, measured, memory_of, spectrum_of, unsteady
 from .records import Record
+from .ways_of_records import Unfit, advised
 
 numpy, optimize = needed("numpy"), needed("scipy.optimize")
 
@@ -41,6 +42,7 @@ class Band:
         return math.exp(-self.gamma * (math.pi - late) / self.omega) * math.cos(late) if self.omega else 0.0
 
 
+@advised
 def narrow_band_of(record: Record, delta: float | None = None, *, longest: float | None = None) -> Chain:
     """The narrow band whose covariance s^2 exp(-gamma t) cos(omega t) is closest to that of a record, by least squares.
 
@@ -63,8 +65,8 @@ def narrow_band_of(record: Record, delta: float | None = None, *, longest: float
     ------
     ValueError
         If the autocorrelation leaves that of a narrow band by more than 0.1 and three of its standard errors. If it does
-        not swing: neither does it fall below 0 by three standard errors, nor does that of the band by 0.1, with an omega
-        of three standard errors.
+        not swing: the omega of the band is less than three standard errors, or so small that its spectrum is largest at 0;
+        or neither does the autocorrelation fall below 0 by three standard errors, nor that of the band by 0.1.
 
     Warns
     -----
@@ -76,19 +78,20 @@ def narrow_band_of(record: Record, delta: float | None = None, *, longest: float
     band = _fitted(record, whole)
     off = abs(whole.rho - numpy.exp(-band.gamma * whole.time) * numpy.cos(band.omega * whole.time)).max()
     if off > SWING + 3 * whole.error:
-        raise ValueError(f"record: its autocorrelation leaves that of a narrow band by {off:.2f}; several bands, or a "
-                         "shaking that begins and ends, are no single narrow band: filter it, or take record.between()")
+        raise Unfit(f"record: its autocorrelation leaves that of a narrow band by {off:.2f}; several bands, or a shaking "
+                    "that begins and ends, are no single narrow band")
     unsure = -whole.rho.min() < 3 * whole.error
-    if unsure and (band.swing < SWING or band.omega < 3 * band.errors[2]):
-        raise ValueError("record: its autocorrelation does not swing, or the record is too short to show it; "
-                         "noise.record(record) makes a chain of levels")
+    least = max(3 * band.errors[2], band.gamma / math.sqrt(3))
+    if band.omega < least or unsure and band.swing < SWING:
+        raise Unfit(f"record: its autocorrelation does not swing, or the record is too short to show it: omega is "
+                    f"{band.omega:.3g} +- {band.errors[2]:.1g}")
     step = band.deviation / 2 if delta is None else delta
     positive(delta=step)
     chain = narrow_band(band.deviation, band.gamma, band.omega, step) + float(record.value.mean())
     doubts = (*unsteady(record), *[f"its autocorrelation swings to {whole.rho.min():.2f}, which is less than three standard "
                                    "errors; a longer record would tell"] * bool(unsure))
     for note in (*doubts, *(chain.notes if chain.deviation > MATCH * band.deviation else ())):
-        warnings.warn(note, UserWarning, stacklevel=2)
+        warnings.warn(note, UserWarning, stacklevel=3)
     return dataclasses.replace(chain, name=f"narrow band of {record.source or 'a record'}", fit=band, notes=(
         str(band), *doubts, *chain.notes), meant=measured(whole, *spectrum_of(record, whole)))
 
@@ -97,10 +100,12 @@ def _fitted(record: Record, whole: Memory) -> Band:
     """The band whose autocorrelation is closest to that of the record, and what it is without each of the blocks."""
     def best(memory: Memory) -> list[float]:
         try:
-            found, _ = optimize.curve_fit(lambda t, gamma, omega: numpy.exp(-gamma * t) * numpy.cos(omega * t), memory.time,
-                                          memory.rho, (3 / memory.time[-1], math.pi / memory.half_swing))
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore", optimize.OptimizeWarning)  # of a covariance that nothing uses
+                found, _ = optimize.curve_fit(lambda t, gamma, omega: numpy.exp(-gamma * t) * numpy.cos(omega * t),
+                                              memory.time, memory.rho, (3 / memory.time[-1], math.pi / memory.half_swing))
         except RuntimeError:
-            raise ValueError("record: no narrow band comes close to its autocorrelation; take a longer record") from None
+            raise Unfit("record: no narrow band comes close to its autocorrelation") from None
         return [math.sqrt(memory.variance), *abs(found).tolist()]
 
     numbers, errors = jackknife(record, whole, best)

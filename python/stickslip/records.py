@@ -6,7 +6,7 @@ import pathlib
 import re
 import warnings
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from . import formats
 from .formats.reading import Column
@@ -33,7 +33,7 @@ SMALLEST = 64  # samples of which a drift can be found
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class Record:
-    """Samples of a force, or of an acceleration, over time.
+    """Samples of a force, or of an acceleration, over time. Values in g, gal, cm/s^2 and the like become m/s^2.
 
     Attributes
     ----------
@@ -45,6 +45,9 @@ class Record:
         File, format and column.
     notes
         What was converted or left out, and what looks wrong, in sentences.
+    vertical
+        Vertical acceleration of the ground at the samples [unit], upwards positive; None where it is 0. It changes the
+        normal force, and with it the friction on a block.
 
     Raises
     ------
@@ -57,14 +60,21 @@ class Record:
     unit: str = ""
     source: str = ""
     notes: tuple[str, ...] = ()
+    vertical: "Array | None" = None
 
     def __post_init__(self) -> None:
-        for name in ("time", "value"):
-            object.__setattr__(self, name, numpy.asarray(getattr(self, name), float))
+        factor, unit = in_si(self.unit) if kind_of(self.unit) != "time" else (1, self.unit)
+        converted = [f"{self.unit} became {unit}: times {factor:g}"] * (factor != 1)
+        for name in self._samples:
+            values = numpy.asarray(getattr(self, name), float)
+            object.__setattr__(self, name, values if factor == 1 or name == "time" else values * factor)
+        object.__setattr__(self, "unit", unit)
         if self.time.ndim != 1 or self.time.shape != self.value.shape or len(self.time) < 2:
             raise ValueError(f"time, value: shapes {self.time.shape} and {self.value.shape}; give two arrays of one "
                              "length of at least 2")
-        for name in ("time", "value"):
+        if self.vertical is not None and self.vertical.shape != self.time.shape:
+            raise ValueError(f"vertical: shape {self.vertical.shape}; give it at the {len(self.time)} times of the record")
+        for name in self._samples:
             if not numpy.isfinite(getattr(self, name)).all():
                 n = int(numpy.flatnonzero(~numpy.isfinite(getattr(self, name)))[0])
                 raise ValueError(f"{name}[{n}] = {getattr(self, name)[n]}: must be finite; leave the sample out")
@@ -72,11 +82,22 @@ class Record:
             n = int(numpy.flatnonzero(numpy.diff(self.time) <= 0)[0]) + 1
             raise ValueError(f"time[{n}] = {self.time[n]:g}: must be above time[{n - 1}] = {self.time[n - 1]:g}; sort "
                              "the samples, leave repeated ones out, or name another column of times")
+        object.__setattr__(self, "_history", (*self.notes, *converted))
+        object.__setattr__(self, "notes", tuple(dict.fromkeys((*self._history, *_findings(self)))))
+
+    @property
+    def _samples(self) -> tuple[str, ...]:
+        return ("time", "value") if self.vertical is None else ("time", "value", "vertical")
+
+    def _changed(self, note: str = "", **parts: Any) -> "Record":
+        """Another record that comes of this one; what looks wrong is looked for anew."""
+        return dataclasses.replace(self, notes=(*self._history, *[note] * bool(note)), **parts)
 
     def __repr__(self) -> str:
         lines = [f"{len(self.time)} samples in {self.duration:g} s, step {self.step:g} s"
                  + ("" if self.even else " (uneven)"),
-                 f"mean {self.value.mean():.4g}, standard deviation {self.value.std():.4g} {self.unit}".rstrip()]
+                 f"mean {self.value.mean():.4g}, standard deviation {self.value.std():.4g} {self.unit}".rstrip(),
+                 f"peak {abs(self.value[self.peak]):.5g} {self.unit}".rstrip() + f" at {self.time[self.peak]:g} s"]
         return "\n".join(filter(None, [self.source, *lines, *self.notes]))
 
     def __len__(self) -> int:
@@ -86,6 +107,11 @@ class Record:
         """The values, for `numpy.asarray`."""
         found = numpy.asarray(self.value, dtype)
         return found.copy() if copy else found
+
+    @property
+    def peak(self) -> int:
+        """Number of the first sample of the largest size, from 0."""
+        return int(abs(self.value).argmax())
 
     @property
     def duration(self) -> float:
@@ -138,21 +164,20 @@ class Record:
         if inside.sum() < 2:
             raise ValueError(f"between({begin:g}, {end:g}): holds {inside.sum()} samples; take two times in rising order "
                              f"from {self.time[0]:g} to {self.time[-1]:g}")
-        return dataclasses.replace(self, time=self.time[inside], value=self.value[inside])
+        return self._changed(**{name: getattr(self, name)[inside] for name in self._samples})
 
     def scaled(self, factor: float, unit: str = "") -> "Record":
-        """All values times a factor, in another unit: `record.scaled(1/9.81, "weight")`. Warns where m/s^2 would be taken
-        for g."""
+        """All values times a factor, in another unit: `record.scaled(1/9.81, "weight")`; vertical ones times its size. Warns
+        where m/s^2 would be taken for g."""
         if not unit:
             warn_of_gravity(self, factor, "scaled", 3)
-        return dataclasses.replace(self, value=self.value * factor, unit=unit or self.unit,
-                                   notes=(*self.notes, f"values were multiplied by {factor:g}"))
+        return self._changed(f"values were multiplied by {factor:g}", value=self.value * factor, unit=unit or self.unit,
+                             vertical=None if self.vertical is None else self.vertical * abs(factor))
 
     def centred(self) -> "Record":
         """The values less their mean, which is 0 for the acceleration of a ground that rests before and after."""
         mean = self.value.mean()
-        return dataclasses.replace(self, value=self.value - mean, notes=(
-            *self.notes, f"the mean, {mean:.4g}, was taken off"))
+        return self._changed(f"the mean, {mean:.4g}, was taken off", value=self.value - mean)
 
     def resampled(self, step: float, across: float = 0) -> "Record":
         """Values at even steps [s], linear between samples; in gaps there are none, but in those of at most `across` s."""
@@ -162,22 +187,24 @@ class Record:
         for low, high in self.gaps:
             if high - low > across * (1 + 1e-9):
                 time = time[(time <= low) | (time >= high)]
-        return dataclasses.replace(self, time=time, value=numpy.interp(time, self.time, self.value), notes=(
-            *self.notes, f"interpolated to steps of {step:g} s"))
+        return self._changed(f"interpolated to steps of {step:g} s",
+                             **{name: numpy.interp(time, self.time, getattr(self, name)) for name in self._samples})
 
     def rested(self, rest: float) -> "Record":
         """With samples of no force at the end for some seconds, in which a body comes to rest."""
         if not 0 <= rest < numpy.inf:
             raise ValueError(f"rest = {rest}: must be in [0, inf); give the seconds of no force to append")
         time = self.time[-1] + self.step * numpy.arange(1, numpy.ceil(rest / self.step - 1e-9) + 1)
-        said = [f"{rest:g} s of no force were appended"] if rest else []
-        return dataclasses.replace(self, time=numpy.append(self.time, time), value=numpy.append(self.value, 0 * time),
-                                   notes=(*self.notes, *said))
+        return self._changed(f"{rest:g} s of no force were appended" if rest else "", **{
+            name: numpy.append(getattr(self, name), time if name == "time" else 0 * time) for name in self._samples})
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Write the file of `-force_file`: a line `time,force` for each sample. The force on a body is minus the
-        acceleration of the ground, `record.scaled(-1)`."""
-        numpy.savetxt(path, numpy.column_stack([self.time, self.value]), "%.17g", ",", header="time,force", comments="")
+        """Write the file of `-force_file`: a line `time,force` for each sample, and `vertical` where there is such an
+        acceleration; the comment below the header states the unit m/s^2. The force on a body is minus the acceleration
+        of the ground, `record.scaled(-1)`."""
+        head = "time,force" + ",vertical" * (self.vertical is not None) + f"\n# unit: {self.unit}" * (self.unit == "m/s^2")
+        numpy.savetxt(path, numpy.column_stack([getattr(self, name) for name in self._samples]), "%.17g", ",", header=head,
+                      comments="")
 
 
 def warn_of_gravity(record: Record, factor: float, name: str, stacklevel: int) -> None:
@@ -257,7 +284,7 @@ def read_record(path: str | os.PathLike[str], *, column: int | str | None = None
         record = _record(chosen, moments, unit, differentiate, f"{path.name}: {form}, column {chosen.name}", said)
     except ValueError as problem:
         raise ValueError(f"{path}: {problem}") from None
-    return dataclasses.replace(record, notes=(*record.notes, *_findings(record))).rested(rest)
+    return record.rested(rest)
 
 
 def _named(columns: Sequence[Column], wanted: int | str, option: str, words: bool = False) -> Column:

@@ -114,7 +114,7 @@ class Results(Mapping):
     Attributes
     ----------
     scene, options
-        Parameters as they were used, and every option as it was given, as text.
+        Parameters as they were used, and every option as text; empty where it belongs to no effect in use.
     cost, plan, provenance
         Seconds and sizes, counts of what was done, versions and machine.
     accuracy
@@ -130,6 +130,8 @@ class Results(Mapping):
     study
         With `study`: tables by name, each with columns by name; or None. `runs` has the results of its runs, and the
         results by key are the limits, where the study has limits.
+    warnings
+        What the program warned of, in sentences.
     summary
         All that `-summary` wrote; empty after reading HDF5.
     name
@@ -147,6 +149,7 @@ class Results(Mapping):
         self.plan: dict[str, Any] = parts.get("plan", {})
         self.provenance: dict[str, Any] = parts.get("provenance", {})
         self.accuracy: dict[str, Any] = parts.get("accuracy", {})
+        self.warnings: list[str] = list(parts.get("warnings", ()))
         self.density: Density | None = parts.get("density")
         self.trajectory: "dict[str, Array] | None" = parts.get("trajectory")
         self.modes: dict[str, Any] = parts.get("modes", {})
@@ -330,7 +333,7 @@ def result_of(key: str, parts: Mapping[str, Any]) -> Result:
 
 def from_summary(tree: Mapping[str, Any], name: str = "") -> Results:
     """Results of one run, or of a study, from the tree of a summary."""
-    parts = {key: tree[key] for key in ("scene", "cost", "plan", "accuracy", "provenance") if key in tree}
+    parts = {key: tree[key] for key in ("scene", "cost", "plan", "accuracy", "provenance", "warnings") if key in tree}
     options = tree.get("provenance", {}).get("options", {})
     if "comparison" in tree:
         parts["comparison"] = _comparison(tree["comparison"]["rows"])
@@ -372,7 +375,7 @@ def from_hdf5(file: "h5py.File", name: str = "") -> Results:
     record = dict(file["record"].attrs)
     options = {key: str(value) for key, value in file["record/options"].attrs.items()}
     parts: dict[str, Any] = {
-        "provenance": record, "cost": {"seconds": float(record.get("seconds", math.nan))}, **fields(file),
+        "provenance": record, "warnings": warnings_in(record), "cost": {"seconds": float(record.get("seconds", math.nan))}, **fields(file),
         "scene": {key: parameter(value) for key, value in options.items()},
         "accuracy": {"asked": parameter(options.get("accuracy", "")),
                      "reached": str(record.get("accuracy_reached", "yes")) == "yes"}}
@@ -386,6 +389,11 @@ def from_hdf5(file: "h5py.File", name: str = "") -> Results:
         results[key] = result_of(key, {**dict(data.attrs), **_datasets(data)})
     results |= _limits(parts.get("study", {}))
     return Results(results, options=options, name=name, **parts)
+
+
+def warnings_in(record: dict[str, Any]) -> list[str]:
+    """The warnings among the attributes of /record of HDF5, taken out of them."""
+    return str(record.pop("warnings", "")).splitlines()
 
 
 def parameter(text: str) -> Any:

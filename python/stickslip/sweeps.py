@@ -6,7 +6,7 @@ import pathlib
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from .results import Result, Results, array, result_of
+from .results import Result, Results, array, result_of, warnings_in
 from .needed import needed
 
 if TYPE_CHECKING:
@@ -31,6 +31,8 @@ class Sweep(Results):
         Messages of the points that failed, lacked memory or were refused, by their index; their results are NaN.
     shortfalls
         Messages of the points that did not reach the accuracy, by their index; their results are there.
+    point_warnings
+        What the program warned of at single points, by their index, where the file has it.
     units
         Of the swept options, where the file has them.
 
@@ -39,8 +41,9 @@ class Sweep(Results):
 
     def __init__(self, coords: "Mapping[str, Array]", results: Mapping[str, Result], status: "Array",
                  messages: Mapping[tuple[int, ...], str], *, units: Mapping[str, str] | None = None,
-                 **parts: Any) -> None:
+                 point_warnings: Mapping[tuple[int, ...], Sequence[str]] | None = None, **parts: Any) -> None:
         super().__init__(results, **parts)
+        self.point_warnings = {index: list(texts) for index, texts in (point_warnings or {}).items() if texts}
         self.coords = dict(coords)
         self.dims = tuple(self.coords)
         self.status = status
@@ -83,9 +86,19 @@ class Sweep(Results):
                                turned(one.ci95)) for key, one in self.items()}
         texts = {**self.failures, **self.shortfalls}
         parts = {name: getattr(self, name) for name in
-                 ("options", "name", "summary", "scene", "cost", "plan", "provenance", "accuracy", "units")}
-        return Sweep({name: self.coords[name] for name in dims}, results, turned(self.status),
-                     {tuple(index[n] for n in order): text for index, text in texts.items()}, **parts)
+                 ("options", "name", "summary", "scene", "cost", "plan", "provenance", "accuracy", "warnings", "units")}
+        texts, warned = ({tuple(index[n] for n in order): text for index, text in by_index.items()}
+                         for by_index in (texts, self.point_warnings))
+        return Sweep({name: self.coords[name] for name in dims}, results, turned(self.status), texts,
+                     point_warnings=warned, **parts)
+
+    @property
+    def concerned(self) -> "Array":
+        """Whether warnings concern a point, beside those about options without effect, of the shape of `status`."""
+        found = numpy.zeros(self.shape, bool)
+        for index, texts in self.point_warnings.items():
+            found[index] = any(not text.startswith("-") for text in texts)
+        return found
 
 
 def _gathered(key: str, points: Sequence[Result | None], dims: tuple[str, ...], shape: tuple[int, ...]) -> Result:
@@ -124,8 +137,9 @@ def from_summary(tree: Mapping[str, Any], name: str = "") -> Sweep:
                for key in dict.fromkeys(key for point in points for key in point)}
     status = numpy.array([run["status"] for run in runs], object).reshape(shape)
     messages = {index: run.get("message", "") for index, run in zip(numpy.ndindex(shape), runs)}
+    warned = {index: run.get("warnings", ()) for index, run in zip(numpy.ndindex(shape), runs)}
     return Sweep(coords, results, status, messages, name=name, summary=tree, cost=tree.get("cost", {}),
-                 options=tree["provenance"].get("options", {}), provenance=tree["provenance"])
+                 warnings=tree.get("warnings", ()), point_warnings=warned, options=tree["provenance"].get("options", {}), provenance=tree["provenance"])
 
 
 def from_hdf5(file: "h5py.File", name: str = "") -> Sweep:
@@ -146,7 +160,7 @@ def from_hdf5(file: "h5py.File", name: str = "") -> Sweep:
                 _common(group[f"{key}_{inner}"][()]) if inner else None, numpy.stack(ends, -1) if ends else None)
     status = numpy.array([STATES[int(code)] for code in group["status"][()].ravel()], object).reshape(shape)
     options = {key: str(value) for key, value in file["record/options"].attrs.items()}
-    return Sweep(coords, results, status, {}, name=name, options=options, provenance=record,
+    return Sweep(coords, results, status, {}, name=name, options=options, warnings=warnings_in(record), provenance=record,
                  units={axis: str(group[axis].attrs.get("unit", "")) for axis in axes})
 
 

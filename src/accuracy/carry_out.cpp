@@ -60,8 +60,8 @@ Outcome carry_out(MPI_Comm comm, const cases::Case& given, const Progress& progr
                                              given.method.seed);
   }
   if (question.wants(catalogue::kGivenForce.quantity)) {
-    const auto missed =
-        quantities::append_given_force(given.scene, question.accuracy, outcome.results);
+    const auto missed = quantities::append_given_force(given.scene, question.accuracy,
+                                                       outcome.results, question.start.v);
     if (!missed.empty()) outcome.shortfall = missed;
     outcome.reached = outcome.reached && missed.empty();
   }

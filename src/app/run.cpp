@@ -110,14 +110,16 @@ std::string text_asked_for(const std::vector<std::string>& words) {
   return "";
 }
 
-void warn(const options::Request& request) {
-  for (const auto& warning : request.warnings) print_error("stickslip: " + warning);
+// Adds what the machine gives reason for.
+void warn(options::Request& request) {
   const auto blas = petsc::loaded_blas();
   if (blas.reference) {
-    print_error("stickslip: slow BLAS in use (" + blas.library +
-                "); factorisations take several times longer than with OpenBLAS, which "
-                "`apt install libopenblas0-pthread` provides");
+    request.warnings.push_back("slow BLAS in use (" + blas.library +
+                               "); factorisations take several times longer than with OpenBLAS, "
+                               "which `apt install libopenblas0-pthread` provides");
   }
+  if (petsc::rank(MPI_COMM_WORLD) != 0) return;
+  for (const auto& warning : request.warnings) print_error("stickslip: " + warning);
 }
 
 // Standard error may be a terminal on some ranks alone, so that the first one decides for all.
@@ -274,8 +276,8 @@ Ending ending_of(const std::function<int()>& work) {
 Ending carry_out(const std::vector<std::string>& words, const Beginning& beginning,
                  const Emit& emit) {
   return ending_of([&] {
-    const auto request = agreed_request(words);
-    if (petsc::rank(MPI_COMM_WORLD) == 0) warn(request);
+    auto request = agreed_request(words);
+    warn(request);
     if (request.plan_only) return report_plan(request, emit);
     const bool study = request.study.kind != options::StudyKind::none;
     if (study) return run_study(request, beginning, emit);

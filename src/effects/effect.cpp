@@ -103,6 +103,16 @@ const std::variant<double, std::string>& own_value(const model::Scene& scene,
   throw std::logic_error(fmt::format("the scene has no {}", name));
 }
 
+bool is_idle(const model::Scene& scene, std::string_view option) {
+  bool idle = false;
+  for (const auto* choice : choices()) {
+    if (choice->option == option) return choice->word_in(scene).empty();
+    if (choice->knows(scene, option)) return false;
+    for (const auto* effect : choice->effects) idle = idle || effect->knows(option);
+  }
+  return idle;
+}
+
 double own_number(const model::Scene& scene, std::string_view name) {
   return std::get<double>(own_value(scene, name));
 }
@@ -145,6 +155,7 @@ model::Parameters parameters_of(const model::Scene& s) {
   if (s.force) {
     add("force_file", s.force->file);
     if (s.force->scale != 1) add("force_scale", s.force->scale);
+    if (s.force->gravity > 0) add("gravity", s.force->gravity);
     if (s.force->constant) add("force_interpolation", std::string("constant"));
     if (s.force->rest > 0) add("force_rest", s.force->rest);
     if (s.force->step > 0) {

@@ -3,21 +3,28 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstring>
+#include <fstream>
 #include <memory>
 #include <stdexcept>
+#include <utility>
 
 #include "csv_rows.hpp"
 #include "sample_rows.hpp"
 #include "stickslip/effects/read_scene.hpp"
+#include "stickslip/support/text.hpp"
 
 namespace stickslip::effects {
 namespace {
 
 constexpr const char *kForceFile = "force_file", *kScale = "force_scale",
-                     *kInterpolation = "force_interpolation";
+                     *kInterpolation = "force_interpolation", *kGravity = "gravity";
+constexpr const char *kVertical = "vertical", *kUnit = "# unit: ", *kAcceleration = "m/s^2";
+constexpr double kStandardGravity = 9.80665;  // m/s^2, by the CGPM of 1901
 
 // Where nine in ten samples are evenly spaced, a larger step is a gap; other records are uneven.
-void require_no_gap(const CsvRows<2>& rows) {
+template <std::size_t columns>
+void require_no_gap(const CsvRows<columns>& rows) {
   const auto step = [&](std::size_t n) { return rows.values[n][0] - rows.values[n - 1][0]; };
   std::vector<double> steps;
   for (std::size_t n = 1; n < rows.values.size(); ++n) steps.push_back(step(n));
@@ -41,23 +48,51 @@ void require_no_gap(const CsvRows<2>& rows) {
   }
 }
 
-model::ForceRecord read_record(const std::string& file) {
-  CsvRows<2> rows;
+/// What stands before the samples: names of columns, and comments above or below them.
+struct Head {
+  std::string unit;
+  bool vertical = false;  // whether there is such a column
+};
+
+Head read_head(const std::string& file) {
+  require_readable(file);
+  Head head;
+  std::ifstream lines(file);
+  bool named = false;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with(kUnit)) head.unit = split(line.substr(std::strlen(kUnit)), '\r').at(0);
+    if (line.empty() || line.starts_with('#')) continue;
+    if (std::exchange(named, true)) break;
+    for (auto& name : split(line, ',')) {
+      std::erase_if(name, [](char c) { return c == '"' || c == '\r'; });
+      head.vertical = head.vertical || name == kVertical;
+    }
+  }
+  if (head.unit.empty() || head.unit == kAcceleration) return head;
+  throw std::invalid_argument(fmt::format("unit: {}: must be {}", head.unit, kAcceleration));
+}
+
+// Time, force and, of three columns, vertical acceleration.
+template <std::size_t columns>
+model::ForceRecord read_columns(const std::string& file,
+                                const std::array<const char*, columns>& names) {
+  CsvRows<columns> rows;
   try {
-    rows = read_csv<2>(file, {"time", "force"}, ::io::ignore_extra_column);
+    rows = read_csv<columns>(file, names, ::io::ignore_extra_column);
   } catch (const ::io::error::base& problem) {
     throw std::invalid_argument(fmt::format("is not a CSV file of a force: {}", problem.what()));
   }
   model::ForceRecord record;
-  for (const auto& [time, force] : rows.values) {
-    if (!record.time.empty() && !(time > record.time.back())) {
+  for (const auto& row : rows.values) {
+    if (!record.time.empty() && !(row[0] > record.time.back())) {
       throw std::invalid_argument(fmt::format("{}time = {:.9g} must be above {:.9g}, that of the "
                                               "sample before",
-                                              rows.place(record.time.size()), time,
+                                              rows.place(record.time.size()), row[0],
                                               record.time.back()));
     }
-    record.time.push_back(time);
-    record.force.push_back(force);
+    record.time.push_back(row[0]);
+    record.force.push_back(row[1]);
+    if (columns > 2) record.load.push_back(row[columns - 1]);
   }
   if (record.time.size() < 2) {
     throw std::invalid_argument(
@@ -67,32 +102,72 @@ model::ForceRecord read_record(const std::string& file) {
   return record;
 }
 
+model::ForceRecord read_record(const std::string& file) {
+  const Head head = read_head(file);
+  auto record = head.vertical ? read_columns<3>(file, {"time", "force", kVertical})
+                              : read_columns<2>(file, {"time", "force"});
+  record.unit = head.unit;
+  return record;
+}
+
+// From vertical accelerations to normal forces over the weight. A body that lifts off moves freely,
+// which is another model.
+void read_load(Given& given, const model::Scene& scene, model::ForceRecord& record) {
+  if (record.load.empty()) return;
+  if (scene.friction_name != "coulomb") {
+    return given.refuse("friction", "does not go with a column vertical of -force_file",
+                        "leave -friction out, or the column");
+  }
+  if (!given.has(kGravity) && record.unit.empty()) {
+    return given.refuse(kForceFile, "has a column vertical, and its unit is not known",
+                        "add -gravity in the unit of that column, such as -gravity 9.81");
+  }
+  const double gravity = given.has(kGravity) ? given.real(kGravity) : kStandardGravity;
+  record.gravity = gravity;
+  for (std::size_t n = 0; n < record.load.size(); ++n) {
+    const double vertical = std::abs(record.scale) * record.load[n];
+    record.load[n] = 1 + vertical / gravity;
+    if (record.load[n] >= 0) continue;
+    return given.refuse(kForceFile,
+                        fmt::format("lifts the body off the ground at time {:g}, where the "
+                                    "vertical acceleration {:g} is below -gravity = {:g}",
+                                    record.time[n], vertical, gravity),
+                        "take a -force_scale closer to 0, or leave the column vertical out");
+  }
+}
+
 }  // namespace
 
 std::vector<Option> force_options() {
-  return {Option::file(kForceFile, Kind::input,
-                       "CSV with the columns time,force: a force in the place of the noise. "
-                       "-quantities trajectory is then the motion of a body from rest under it, "
-                       "without random numbers",
-                       {.symbol = {},
-                        .label = "force of",
-                        .others = {"accelerogram", "ground_motion", "time_history"},
-                        .page = "docs/given_force.md"}),
-          {kInterpolation,
-           Kind::choice,
-           "word",
-           "",
-           "",
-           {},
-           {"linear", "constant"},
-           "the force of -force_file between two samples. linear: from one to the other, unless "
-           "this option is given. constant: that of the first",
-           ""},
-          Option::real(
-              kScale, "", "", {}, "factor of the forces of -force_file; 1 unless given",
-              "take for example -9.81 for a ground acceleration in g, which pushes a body "
-              "the other way",
-              {.symbol = {}, .label = "scale of the force", .others = {"scale_factor", "pga"}})};
+  return {
+      Option::file(kForceFile, Kind::input,
+                   "CSV with the columns time,force: a force in the place of the noise. "
+                   "-quantities given_force is then the motion of a body under it, without random "
+                   "numbers",
+                   {.symbol = {},
+                    .label = "force of",
+                    .others = {"accelerogram", "ground_motion", "time_history"},
+                    .page = "docs/given_force.md"}),
+      {kInterpolation,
+       Kind::choice,
+       "word",
+       "",
+       "",
+       {},
+       {"linear", "constant"},
+       "the force of -force_file between two samples. linear: from one to the other, unless "
+       "this option is given. constant: that of the first",
+       ""},
+      Option::real(
+          kScale, "", "", {}, "factor of the forces of -force_file; 1 unless given",
+          "take for example -9.81 for a ground acceleration in g, which pushes a body "
+          "the other way",
+          {.symbol = {}, .label = "scale of the force", .others = {"scale_factor", "pga"}}),
+      Option::real(kGravity, "", "", Range::positive(),
+                   "acceleration of gravity, where -force_file has a column vertical: the "
+                   "vertical acceleration a of the ground multiplies friction by 1 + a/gravity, "
+                   "with a times |-force_scale|; 9.80665 for files in m/s^2",
+                   "in the unit of that column, after scaling")};
 }
 
 void read_force(Given& given, model::Scene& scene) {
@@ -103,6 +178,7 @@ void read_force(Given& given, model::Scene& scene) {
     if (given.has(kScale)) record.scale = given.real(kScale);
     record.constant = given.text(kInterpolation) == "constant";
     for (double& force : record.force) force *= record.scale;
+    read_load(given, scene, record);
     scene.force = std::make_shared<const model::ForceRecord>(std::move(record));
   } catch (const std::invalid_argument& unfit) {
     given.refuse(
@@ -116,6 +192,7 @@ void read_force(Given& given, model::Scene& scene) {
 
 std::string force_note(const model::Scene& scene) {
   if (!scene.force) return "";
+  if (!scene.force->load.empty()) return "";
   const auto [low, high] = std::ranges::minmax(scene.force->force);
   const double up = scene.friction.mu_s - scene.bias;
   const double down = scene.friction.mirrored().mu_s + scene.bias;

@@ -85,6 +85,7 @@ model::ForceRecord read_samples(const Given& given, const std::string& file,
     if (!(time > record.time.back())) continue;
     record.time.push_back(time);
     record.force.push_back(0);
+    if (!record.load.empty()) record.load.push_back(0);
   }
   return record;
 }

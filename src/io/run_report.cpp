@@ -56,6 +56,7 @@ outputs::Report report_from(MPI_Comm comm, const options::Request& request,
   report.comm = comm;
   report.provenance = provenance(comm);
   report.options = request.resolved;
+  report.warnings = request.warnings;
   report.seconds = times.total;
   return report;
 }

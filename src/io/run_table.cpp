@@ -12,6 +12,12 @@
 
 namespace stickslip::io {
 
+namespace {
+
+std::string unit_behind(const std::string& unit) { return unit.empty() ? "" : " " + unit; }
+
+}  // namespace
+
 std::string scene_text(const model::Scene& s) {
   std::vector<std::string> parts;
   const auto add = [&](const char* name, double value) {
@@ -32,7 +38,13 @@ std::string scene_text(const model::Scene& s) {
     for (auto& part : effects::heading(choice->in(s), s)) parts.push_back(std::move(part));
   }
   if (s.bias != 0) add("bias", s.bias);
-  if (s.force) parts.push_back("force of " + s.force->file);
+  if (s.force) {
+    const auto n = s.force->peak();
+    parts.push_back(fmt::format("force of {}, at most {:.5g}{} at time {:g}{}", s.force->file,
+                                std::abs(s.force->force[n]), unit_behind(s.force->unit),
+                                s.force->time[n], s.force->unit.empty() ? "" : " s"));
+    if (s.force->gravity > 0) add("gravity", s.force->gravity);
+  }
   return spaced(parts);
 }
 

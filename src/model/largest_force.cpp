@@ -13,8 +13,8 @@ double largest_force(const Scene& scene) {
   const double seen =
       std::max(along.mu_s, against.mu_s) + noise.step() + 12 * noise.standard_deviation();
   const double drawn = std::min(highest, noise.table ? highest : seen);
-  return std::max(drawn, scene.force ? scene.force->largest() : 0) + std::abs(scene.bias) -
-         std::min(along.mu_d, against.mu_d);
+  return std::max(drawn, scene.force ? std::abs(scene.force->force[scene.force->peak()]) : 0) +
+         std::abs(scene.bias) - std::min(along.mu_d, against.mu_d);
 }
 
 }  // namespace stickslip::model

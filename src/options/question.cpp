@@ -202,6 +202,30 @@ void read_start(Settings& settings, Request& request) {
   }
 }
 
+// The velocity at the first sample of a given force, whose noise level means nothing.
+void read_start_velocity(Settings& settings, Request& request) {
+  const std::string text = settings.text("start");
+  const auto state = parse_numbers(text);
+  if (state && state->size() == 2 && (*state)[0] == 0) {
+    request.question.start = {0, (*state)[1]};
+  } else if (settings.has("start") && text != "rest") {
+    settings.refuse("start", "must be rest or 0,v under a given force, which is that of the record",
+                    state && state->size() == 2 ? fmt::format("take -start 0,{:g}", (*state)[1])
+                                                : "write for example -start 0,10");
+  }
+}
+
+// Bodies under a given force share the velocity of other quantities, but not their noise level.
+void read_starts(Settings& settings, Request& request) {
+  const auto all = catalogue::entries();
+  const bool noisy = std::ranges::any_of(all, [&](const auto* entry) {
+    return entry != &catalogue::kGivenForce && entry->takes("start") &&
+           request.question.wants(entry->quantity);
+  });
+  if (noisy) return read_start(settings, request);
+  if (request.question.depends_on("start")) read_start_velocity(settings, request);
+}
+
 // Below the speed to which bodies tend on the highest level of the noise, on either side or on that
 // of the passage.
 void check_speeds(Settings& settings, const Request& request) {
@@ -285,7 +309,7 @@ void read_question(Settings& settings, Request& request) {
   question.passage = meaning(kPassages, settings.text("passage"));
   check_speeds(settings, request);
   if (!settings.sound()) return;  // the others look at states of the model
-  if (question.depends_on("start")) read_start(settings, request);
+  read_starts(settings, request);
   check_passages(settings, question);
   examine_observables(settings, request);
 }

@@ -79,9 +79,20 @@ void choose_step(const Settings& settings, Request& request) {
   request.scene.delta = 0.5 / std::sqrt(request.scene.tau);
 }
 
-// The value of an option as it is used.
+// What the model says of its parameters.
+void add_notes(Request& request) {
+  const bool follows =
+      request.question.wants(catalogue::kGivenForce.quantity) && request.question.start.v == 0;
+  for (const auto& said : {effects::step_warning(request.scene), effects::noise_note(request.scene),
+                           follows ? effects::force_note(request.scene) : std::string()}) {
+    if (!said.empty()) request.warnings.push_back(said);
+  }
+}
+
+// The value of an option as it is used; empty where it belongs to no effect in use.
 std::string used_text(const Settings& settings, const Request& request, const Option& option) {
   const std::string& name = option.name;
+  if (effects::is_idle(request.scene, name)) return "";
   if (name == "delta" && settings.has("delta_per_mu_s")) return "mu_s/delta_per_mu_s";
   const bool chosen = !settings.has(name) && !option.initial.empty();
   const auto given_or = [&](double used) {
@@ -151,6 +162,7 @@ Request request_of(Settings& settings) {
   for (const auto& option : all_options()) {
     request.resolved.emplace_back(option.name, used_text(settings, request, option));
   }
+  if (settings.sound() && request.study.kind == StudyKind::none) add_notes(request);
   return request;
 }
 
@@ -163,14 +175,6 @@ Request read_request(const std::vector<std::string>& argv) {
   if (sweeps(settings)) return read_sweep(settings);
   Request request = request_of(settings);
   problems.raise();
-  if (request.study.kind == StudyKind::none) {
-    const bool follows = request.question.wants(catalogue::kGivenForce.quantity);
-    for (const auto& said :
-         {effects::step_warning(request.scene), effects::noise_note(request.scene),
-          follows ? effects::force_note(request.scene) : std::string()}) {
-      if (!said.empty()) request.warnings.push_back(said);
-    }
-  }
   return request;
 }
 

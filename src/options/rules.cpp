@@ -32,7 +32,8 @@ class Rules {
       const auto& word = choice->word_in(r_.scene);
       for (const auto* effect : choice->effects) {
         for (const auto& [option, refused, example] : effect->parameters) {
-          if (!seen.insert(option.name).second || is_known(option.name)) continue;
+          if (!seen.insert(option.name).second) continue;
+          if (!effects::is_idle(r_.scene, option.name)) continue;
           if (word.empty()) {
             warn({option.name.c_str()}, true);
             continue;
@@ -60,11 +61,14 @@ class Rules {
                    : study_     ? Subject::study
                    : swept      ? Subject::sweep
                                 : Subject::run);
-    for (const char* option : {"observable", "start", "horizon", "transient_solver",
-                               "spectrum_solver", "passage", "force_file", "force_interpolation",
-                               "force_scale", "force_rest", "sample_layout", "sample_step"}) {
+    for (const char* option :
+         {"observable", "start", "horizon", "transient_solver", "spectrum_solver", "passage",
+          "force_file", "force_interpolation", "force_scale", "force_rest", "sample_layout",
+          "sample_step", "gravity"}) {
       warn({option}, !asked(option));
     }
+    const bool lifts = r_.scene.force && !r_.scene.force->load.empty();
+    warn({"gravity"}, asked("gravity") && !lifts, "without a column vertical in -force_file");
     for (const auto* argument : catalogue::arguments()) {
       const std::string option(argument->option);
       const bool of_method = method_.small_lambda && option == "lambda";
@@ -155,14 +159,6 @@ class Rules {
       const char* here = subject == Subject::plan ? "with -plan" : "with -study";
       warn({output->option.c_str()}, true, of.contains(Subject::run) ? here : elsewhere);
     }
-  }
-
-  // Whether an effect in use knows the option.
-  [[nodiscard]] bool is_known(const std::string& option) const {
-    const auto all = effects::choices();
-    return std::any_of(all.begin(), all.end(), [&](const effects::Choice* choice) {
-      return choice->knows(r_.scene, option);
-    });
   }
 
   // What is no number of the table needs a file of an output that holds it.

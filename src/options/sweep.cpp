@@ -5,6 +5,7 @@
 #include <petscsys.h>
 
 #include <algorithm>
+#include <cstring>
 #include <fstream>
 #include <map>
 #include <memory>
@@ -94,68 +95,74 @@ void check_effects(const Sweep& sweep, const Request& request, Problems& problem
   }
 }
 
-// "at mu_d = 2 and 3 more points: "; nothing if these are all.
-std::string where(const Sweep& sweep, const std::vector<std::size_t>& points) {
-  if (points.size() == sweep.size()) return "";
-  const std::string more =
-      points.size() > 1 ? fmt::format(" and {} more points", points.size() - 1) : "";
-  return fmt::format("at {}{}: ", sweep.place(points.front()), more);
+// A message without its numbers.
+std::string kind_of(std::string message) {
+  std::erase_if(message, [](char c) { return std::strchr("0123456789.+-e", c) != nullptr; });
+  return message;
 }
 
-/// Messages about points, each once, in the order in which they came up.
+/// Messages about points, each once with the places it holds at, in the order in which they came
+/// up. Those of one kind count as one.
 class Messages {
  public:
-  void add(const std::string& message, std::size_t point) {
-    auto& points = points_of_[message];
-    if (points.empty()) order_.push_back(message);
+  void add(const std::string& message, std::size_t point, const std::string& kind) {
+    auto& points = points_of_[kind];
+    if (points.empty()) order_.emplace_back(kind, message);
     points.push_back(point);
   }
-  /// Each with the places it holds at; of many the first.
-  void report(const Sweep& sweep, Problems& problems) const {
-    for (std::size_t n = 0; n < std::min(order_.size(), kMostMessages); ++n) {
-      problems.add(where(sweep, points_of_.at(order_[n])) + order_[n]);
+  /// "at mu_d = 2 and 3 more points: " and the message; the message alone where these are all of
+  /// so many points.
+  [[nodiscard]] std::vector<std::string> texts(const Sweep& sweep, std::size_t all) const {
+    std::vector<std::string> texts;
+    for (const auto& [kind, message] : order_) {
+      const auto& points = points_of_.at(kind);
+      const std::string more =
+          points.size() > 1 ? fmt::format(" and {} more points", points.size() - 1) : "";
+      texts.push_back(points.size() == all
+                          ? message
+                          : fmt::format("at {}{}: {}", sweep.place(points.front()), more, message));
     }
-    if (order_.size() <= kMostMessages) return;
-    problems.add(fmt::format("and {} more problems of this kind", order_.size() - kMostMessages));
-  }
-  /// The first with its places; empty without any.
-  [[nodiscard]] std::string first(const Sweep& sweep) const {
-    return order_.empty() ? "" : where(sweep, points_of_.at(order_[0])) + order_[0];
+    return texts;
   }
 
  private:
   std::map<std::string, std::vector<std::size_t>> points_of_;
-  std::vector<std::string> order_;
+  std::vector<std::pair<std::string, std::string>> order_;  // kind, first message
 };
 
-// Finds the points that the model refuses, which is a problem if it refuses all of them, and where
-// static friction acts with another value than the one given.
-void check_points(Sweep& sweep, Problems& problems, std::vector<std::string>& warnings) {
-  Messages refusals;
-  std::vector<std::size_t> between_levels;
-  std::string step;
+// Of many the first.
+void report(const std::vector<std::string>& reasons, Problems& problems) {
+  for (std::size_t n = 0; n < std::min(reasons.size(), kMostMessages); ++n)
+    problems.add(reasons[n]);
+  if (reasons.size() <= kMostMessages) return;
+  problems.add(fmt::format("and {} more problems of this kind", reasons.size() - kMostMessages));
+}
+
+// Finds the points that the model refuses, which is a problem if it refuses all of them; returns
+// the warnings about the others.
+std::vector<std::string> check_points(Sweep& sweep, Problems& problems) {
+  Messages refusals, notes;
   bool examined = false;
   for (std::size_t point = 0; point < sweep.size(); ++point) {
     Settings own = sweep.settings(point);
     const Request request = own.sound() ? request_of(own) : Request();
     const auto& messages = own.problems().messages();
-    for (const auto& message : messages) refusals.add(message, point);
+    for (const auto& message : messages) refusals.add(message, point, message);
     if (!messages.empty()) {
       sweep.leave_out(point, fmt::format("{}", fmt::join(messages, "; ")));
       continue;
     }
     if (!std::exchange(examined, true)) check_effects(sweep, request, problems);
-    const std::string warning = effects::step_warning(request.scene);
-    if (!warning.empty()) between_levels.push_back(point);
-    if (step.empty()) step = warning;
+    for (const auto& said : request.warnings) notes.add(said, point, kind_of(said));
   }
-  if (!examined) refusals.report(sweep, problems);
   const auto refused = sweep.left_out().size();
-  if (refused > 0) {
-    warnings.push_back(fmt::format("{} of {} points are refused and left out, such as {}", refused,
-                                   sweep.size(), refusals.first(sweep)));
-  }
-  if (!step.empty()) warnings.push_back(where(sweep, between_levels) + step);
+  auto warnings = notes.texts(sweep, sweep.size() - refused);
+  if (refused == 0) return warnings;
+  const auto reasons = refusals.texts(sweep, sweep.size());
+  if (!examined) report(reasons, problems);
+  warnings.push_back(fmt::format("{} of {} points are refused and left out, such as {}", refused,
+                                 sweep.size(), reasons.front()));
+  return warnings;
 }
 
 bool is_axis(const std::vector<SweepAxis>& axes, const std::string& name) {
@@ -244,13 +251,12 @@ Request read_sweep(Settings settings) {
   check_ranks(settings);
   problems.raise();
   const auto sweep = std::make_shared<Sweep>(settings, std::move(axes));
-  std::vector<std::string> warnings;
-  check_points(*sweep, problems, warnings);
+  auto warnings = check_points(*sweep, problems);
   problems.raise();
   std::size_t first = 0;
   while (sweep->left_out().contains(first)) ++first;
   Request request = sweep->request(first);
-  request.warnings.insert(request.warnings.end(), warnings.begin(), warnings.end());
+  request.warnings = std::move(warnings);
   request.sweep = sweep;
   request.files = read_files(settings);
   for (auto& [name, value] : request.resolved) {

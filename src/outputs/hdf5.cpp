@@ -195,6 +195,7 @@ void write_hdf5(const Report& report, const std::string& name) {
   write_texts(file, "/record", report.provenance);
   write_texts(file, "/record/options", report.options);
   file.attribute("/record", "seconds", report.seconds);
+  file.attribute("/record", "warnings", fmt::format("{}", fmt::join(report.warnings, "\n")));
   report.grid ? write_grid(file, report.grid()) : write_results(file, report);
   file.commit();
   if (report.density == nullptr || petsc::rank(report.comm) != 0) return;

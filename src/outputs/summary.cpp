@@ -10,6 +10,7 @@ Json summary_of(const Report& report) {
   Json& provenance = tree["provenance"];
   for (const auto& [name, value] : report.provenance) provenance[name] = value;
   for (const auto& [name, value] : report.options) provenance["options"][name] = value;
+  tree["warnings"] = report.warnings;
   return tree;
 }
 

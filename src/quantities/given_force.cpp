@@ -20,7 +20,7 @@ using simulation::Slip;
 constexpr double kUnit = std::numeric_limits<double>::epsilon();
 
 // Forces and drag by some units of rounding larger or smaller.
-Response varied(model::Process process, model::ForceRecord record, double sign) {
+Response varied(model::Process process, model::ForceRecord record, double velocity, double sign) {
   const double of_drag = 1 + sign * (process.drag.is_linear() ? 4 * kUnit : 2e-14);
   process.drag.linear *= of_drag;
   process.drag.cubic *= of_drag;
@@ -28,28 +28,32 @@ Response varied(model::Process process, model::ForceRecord record, double sign) 
     process.drag.law = [law, of_drag](double v) { return of_drag * law(v); };
   }
   for (double& force : record.force) force *= 1 + sign * 4 * kUnit;
-  return simulation::respond(process, record, 0.5);
+  return simulation::respond(process, record, velocity, 0.5);
 }
 
 // The same force with a sample more in each interval.
 model::ForceRecord refined(const model::ForceRecord& given) {
-  model::ForceRecord fine{.constant = given.constant};
-  fine.time.reserve(2 * given.time.size());
-  fine.force.reserve(2 * given.time.size());
-  for (std::size_t n = 0; n < given.time.size(); ++n) {
-    if (n > 0) {
-      const double before = given.force[n - 1];
-      fine.time.push_back(std::midpoint(given.time[n - 1], given.time[n]));
-      fine.force.push_back(given.constant ? before : std::midpoint(before, given.force[n]));
+  const auto finer = [](const std::vector<double>& samples, bool constant) {
+    std::vector<double> fine;
+    fine.reserve(2 * samples.size());
+    for (std::size_t n = 0; n < samples.size(); ++n) {
+      if (n > 0) {
+        const double before = samples[n - 1];
+        fine.push_back(constant ? before : std::midpoint(before, samples[n]));
+      }
+      fine.push_back(samples[n]);
     }
-    fine.time.push_back(given.time[n]);
-    fine.force.push_back(given.force[n]);
-  }
-  return fine;
+    return fine;
+  };
+  return {.time = finer(given.time, false),
+          .force = finer(given.force, given.constant),
+          .constant = given.constant,
+          .load = finer(given.load, given.constant)};
 }
 
-Response on_refined(const model::Process& process, const model::ForceRecord& given) {
-  Response found = varied(process, refined(given), 1);
+Response on_refined(const model::Process& process, const model::ForceRecord& given,
+                    double velocity) {
+  Response found = varied(process, refined(given), velocity, 1);
   for (auto* path : {&found.v, &found.x}) {
     for (std::size_t n = 0; n < given.time.size(); ++n) (*path)[n] = (*path)[2 * n];
     path->resize(given.time.size());
@@ -60,10 +64,10 @@ Response on_refined(const model::Process& process, const model::ForceRecord& giv
 /// A response, and two that differ from it by rounding.
 class Compared {
  public:
-  explicit Compared(const model::Scene& scene)
-      : found_(simulation::respond(scene.process(1), *scene.force)),
-        others_{on_refined(scene.process(1), *scene.force),
-                varied(scene.process(1), *scene.force, -1)},
+  Compared(const model::Scene& scene, double velocity)
+      : found_(simulation::respond(scene.process(1), *scene.force, velocity)),
+        others_{on_refined(scene.process(1), *scene.force, velocity),
+                varied(scene.process(1), *scene.force, velocity, -1)},
         alike_(std::ranges::all_of(others_, [&](const Response& other) {
           return other.slips.size() == found_.slips.size();
         })) {}
@@ -108,6 +112,14 @@ class Compared {
   bool alike_;
 };
 
+// What velocity, path and time are measured in where forces are in m/s^2.
+std::string unit_in(const std::string& of_force, const std::string& unit) {
+  if (unit == catalogue::kPathForce.unit) return of_force;
+  if (unit == catalogue::kPathVelocity.unit) return "m/s";
+  if (unit == catalogue::kPathDisplacement.unit) return "m";
+  return unit.empty() ? unit : "s";
+}
+
 // The displacement of the last sample may cancel; that of the path shows how well it is known.
 std::string shortfall(const Results& results, bool alike, double accuracy) {
   if (!alike) {
@@ -125,8 +137,9 @@ std::string shortfall(const Results& results, bool alike, double accuracy) {
 
 }  // namespace
 
-std::string append_given_force(const model::Scene& scene, double accuracy, Results& results) {
-  const Compared compared(scene);
+std::string append_given_force(const model::Scene& scene, double accuracy, Results& results,
+                               double velocity) {
+  const Compared compared(scene, velocity);
   const auto& time = scene.force->time;
   const double duration = time.back() - time.front();
   Results own;
@@ -152,6 +165,9 @@ std::string append_given_force(const model::Scene& scene, double accuracy, Resul
   own.back().error.assign(time.size(), 0.0);
   own.push_back(compared.of_path(catalogue::kPathVelocity, time, &Response::v));
   own.push_back(compared.of_path(catalogue::kPathDisplacement, time, &Response::x));
+  if (!scene.force->unit.empty()) {
+    for (auto& result : own) result.unit = unit_in(scene.force->unit, result.unit);
+  }
   std::string missed = shortfall(own, compared.alike(), accuracy);
   std::ranges::move(own, std::back_inserter(results));
   return missed;

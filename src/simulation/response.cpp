@@ -163,16 +163,23 @@ class Branch {
     process.drag.is_linear() ? void(c_ = process.drag.linear) : void(table_.emplace(process.drag));
   }
 
-  /// force + g - mu_s, 0 where that is rounding: above 0 no body stays at rest.
-  [[nodiscard]] double beyond_static(double force) const {
-    return model::snapped_difference(force, friction_.mu_s - bias_);
+  /// force + g - mu_s, 0 where that is rounding: above 0 no body stays at rest. Friction, here and
+  /// below, is that under the weight times `load`.
+  [[nodiscard]] double beyond_static(double force, double load) const {
+    return model::snapped_difference(force, friction_.mu_s * load - bias_);
   }
   /// The acceleration of a body that starts to slide, beside drag; `beyond` as above.
-  [[nodiscard]] double push(double beyond) const {
-    return beyond + (friction_.mu_s - friction_.at_rest());
+  [[nodiscard]] double push(double beyond, double load) const {
+    return beyond + (friction_.mu_s - friction_.at_rest()) * load;
   }
   /// force + g - F(0+).
-  [[nodiscard]] double net_force(double force) const { return friction_.net_force(force, bias_); }
+  [[nodiscard]] double net_force(double force, double load) const {
+    return model::snapped_difference(force, friction_.at_rest() * load - bias_);
+  }
+  /// Its slope over time of those of force and load.
+  [[nodiscard]] double net_slope(double force, double load) const {
+    return force - friction_.at_rest() * load;
+  }
 
   /// Slides from a speed for a time, or until the body stops. u' changes its sign once at most: it
   /// obeys a linear equation with the right-hand side `slope`. So u is monotone up to there.
@@ -214,26 +221,39 @@ class Branch {
   std::optional<DragTable> table_;
 };
 
+/// What acts on a body: a force, and the normal force over the weight.
+struct Action {
+  double force, load;
+};
+
 class Body {
  public:
-  Body(const model::Process& process, double stride)
-      : branches_{Branch(process, stride), Branch(process.mirrored(), stride)} {}
+  Body(const model::Process& process, double stride, double time, double velocity)
+      : branches_{Branch(process, stride), Branch(process.mirrored(), stride)},
+        y_(velocity > 0   ? 1
+           : velocity < 0 ? -1
+                          : 0),
+        u_(std::abs(velocity)) {
+    if (y_ != 0) open_ = Slip{time, 0, 0, u_};
+  }
 
-  /// While the force goes from one value to another.
-  void follow(double begin, double end, double from, double to) {
-    const double length = end - begin, slope = (to - from) / length;
+  /// While the action goes from one to another.
+  void follow(double begin, double end, const Action& from, const Action& to) {
+    const double length = end - begin;
+    const Action slope{(to.force - from.force) / length, (to.load - from.load) / length};
     for (double t = 0; t < length;) {
-      const double force = from + slope * t;
-      double push = y_ == 0 ? 0 : branch(y_).net_force(y_ * force);
+      const Action now{from.force + slope.force * t, from.load + slope.load * t};
+      double push = y_ == 0 ? 0 : branch(y_).net_force(y_ * now.force, now.load);
       if (y_ == 0) {
-        const auto start = release(force, to, length - t);
+        const auto start = release(now, to, length - t);
         if (open_ && (!start || start->wait > 0)) close(begin + t);
         if (!start) return;
         t += start->wait;
         push = start->push;
         if (!open_) open_ = Slip{begin + t, 0, x_, 0};
       }
-      if (t < length) t += slide(push, slope, length - t);
+      if (t >= length) return;
+      t += slide(push, branch(y_).net_slope(y_ * slope.force, slope.load), length - t);
     }
   }
   void expect(std::size_t samples) {
@@ -257,21 +277,23 @@ class Body {
 
   Branch& branch(int y) { return branches_[y > 0 ? 0 : 1]; }
 
-  // Of a body at rest under a force that goes from one value to another; nothing if it stays.
-  std::optional<Release> release(double from, double to, double length) {
+  // Of a body at rest under an action that goes from one to another; nothing if it stays.
+  std::optional<Release> release(const Action& from, const Action& to, double length) {
     for (int y : {1, -1}) {
-      const double now = branch(y).beyond_static(y * from), then = branch(y).beyond_static(y * to);
+      const double now = branch(y).beyond_static(y * from.force, from.load),
+                   then = branch(y).beyond_static(y * to.force, to.load);
       if (now <= 0 && then <= 0) continue;
       y_ = y;
       u_ = 0;
-      if (now > 0) return Release{0, branch(y).push(now)};
-      return Release{length * (-now / (then - now)), branch(y).push(0)};
+      if (now > 0) return Release{0, branch(y).push(now, from.load)};
+      const double share = -now / (then - now);
+      return Release{length * share, branch(y).push(0, from.load + share * (to.load - from.load))};
     }
     return std::nullopt;
   }
   // Up to a stop, or for a time; returns how long.
   double slide(double push, double slope, double time) {
-    const Slide slide = branch(y_).move(u_, push, y_ * slope, time);
+    const Slide slide = branch(y_).move(u_, push, slope, time);
     u_ = slide.speed;
     x_ += y_ * slide.path;
     response_.sliding += slide.time;
@@ -298,13 +320,15 @@ class Body {
 
 }  // namespace
 
-Response respond(const model::Process& process, const model::ForceRecord& record, double stride) {
-  Body body(process, stride);
-  const auto &time = record.time, &force = record.force;
+Response respond(const model::Process& process, const model::ForceRecord& record, double velocity,
+                 double stride) {
+  const auto& time = record.time;
+  Body body(process, stride, time.front(), velocity);
+  const auto action = [&](std::size_t n) { return Action{record.force[n], record.load_at(n)}; };
   body.expect(time.size());
   body.sample();
   for (std::size_t n = 0; n + 1 < time.size(); ++n) {
-    body.follow(time[n], time[n + 1], force[n], record.constant ? force[n] : force[n + 1]);
+    body.follow(time[n], time[n + 1], action(n), action(record.constant ? n : n + 1));
     body.sample();
   }
   return body.end(time.back());

@@ -31,7 +31,7 @@ Json head(std::size_t point, Status status, const std::string& message) {
   return json;
 }
 
-Json entry_of(MPI_Comm comm, const cases::Case& given, std::size_t point) {
+Json outcome_of(MPI_Comm comm, const cases::Case& given, std::size_t point) {
   const double start = petsc::wall_seconds();
   try {
     const auto outcome = accuracy::carry_out(comm, given, {});
@@ -63,8 +63,10 @@ const char* status_text(Status status) {
   return "";
 }
 
-SweepPoint compute_run(MPI_Comm comm, const cases::Case& given, std::size_t point) {
-  return read_run(entry_of(comm, given, point).dump());
+SweepPoint compute_run(MPI_Comm comm, const options::Request& given, std::size_t point) {
+  Json json = outcome_of(comm, given, point);
+  json["warnings"] = given.warnings;
+  return read_run(json.dump());
 }
 
 SweepPoint refused_run(std::size_t point, const std::string& reason) {

@@ -7,7 +7,7 @@ import unittest
 from running import SOURCES, Case
 
 RECORD = SOURCES / "options" / "given_force.csv"
-ASKED = ("-quantities", "trajectory", "-force_file")
+ASKED = ("-quantities", "given_force", "-force_file")
 HEADER = "time,force\n"
 
 
@@ -96,7 +96,7 @@ class GivenForce(Case):
 
     def test_options_without_effect_are_named(self):
         for option, value in (("-tau", "2"), ("-delta", "0.5"), ("-noise", "telegraph"), ("-telegraph_rate", "3"),
-                              ("-seed", "3"), ("-start", "0,0"), ("-horizon", "3")):
+                              ("-seed", "3"), ("-horizon", "3")):
             done = self.run_ok(*ASKED, RECORD, option, value)
             self.assertIn(f"{option} = {value} has no effect on the quantities asked for", done.stderr)
         done = self.run_ok("-quantities", "noise_law", "-force_file", RECORD, "-force_scale", "2")
@@ -110,6 +110,51 @@ class GivenForce(Case):
         self.assertNotIn("noise", done.stdout)
         # Without drag and with a bias above mu_d, a record ends even where the noise would not.
         self.run_ok(*ASKED, RECORD, "-mu_d", "0.2", "-bias", "0.4", "-drag", "none")
+
+    def test_a_velocity_at_the_first_sample(self):
+        """10 m/s against 0.3 * 9.8 m/s^2: v^2/(2 mu g) = 17.0068 m."""
+        (self.folder / "still.csv").write_text("# unit: m/s^2\n" + HEADER + "0,0\n10,0\n")
+        block = (*ASKED, "still.csv", "-mu_s", "2.94", "-mu_d", "2.94", "-drag", "none", "-start")
+        results = self.summary(*block, "0,10", folder=self.folder)["results"]
+        self.assert_close(results["final_displacement"]["value"], 100 / 5.88, 1e-14)
+        self.assert_close(results["slip_end"]["value"][0], 10 / 2.94, 1e-14)
+        self.assert_close(self.summary(*block, "0,-10", folder=self.folder)["results"]["final_displacement"]["value"],
+                          -100 / 5.88, 1e-14)
+        self.run_ok(*block, "rest")
+        self.refuse(*block, "2,10", message=("must be rest or 0,v under a given force", "take -start 0,10"))
+        self.refuse(*block, "s+", message=("must be rest or 0,v",))
+        done = self.run_ok(*block, "0,10", "-sweep_mu_d", "1,2.94", folder=self.folder)
+        self.assertNotIn("tau", done.stdout)
+
+    def test_units_of_the_record(self):
+        (self.folder / "pulse.csv").write_text("# unit: m/s^2\n" + HEADER + "0,1\n1,4\n2,0\n")
+        options = (*ASKED, "pulse.csv", "-mu_s", "1", "-mu_d", "1", "-drag", "none")
+        self.assertIn("force of pulse.csv, at most 4 m/s^2 at time 1 s", self.run_ok(*options, folder=self.folder).stdout)
+        results = self.summary(*options, folder=self.folder)["results"]
+        for key, unit in (("final_displacement", "m"), ("largest_speed", "m/s"), ("slip_begin", "s"),
+                          ("path_force", "m/s^2"), ("path_displacement", "m"), ("slip_peak", "m/s")):
+            self.assertEqual(results[key]["unit"], unit, key)
+        self.refuse_file("# unit: g\n" + HEADER + "0,1\n1,2\n", "unit: g: must be m/s^2")
+
+    def test_vertical_accelerations(self):
+        """Friction is mu (1 + a/g), with a times the size of -force_scale; what lifts off is refused."""
+        def final(rows, *more):
+            (self.folder / "v.csv").write_text("time,force,vertical\n" + rows)
+            options = (*ASKED, "v.csv", "-mu_s", "2", "-mu_d", "2", "-drag", "none", "-start", "0,10", *more)
+            return self.summary(*options, folder=self.folder)["results"]["final_displacement"]["value"]
+        self.assert_close(final("0,0,5\n20,0,5\n", "-gravity", "10"), 100 / (2 * 3), 1e-14)
+        self.assert_close(final("0,0,-5\n20,0,-5\n", "-gravity", "10"), 100 / (2 * 1), 1e-14)
+        self.assert_close(final("0,0,5\n20,0,5\n", "-gravity", "10", "-force_scale", "-2"), 100 / (2 * 4), 1e-14)
+        self.assert_close(final("0,0,5\n20,0,5\n", "-gravity", "10", "-force_interpolation", "constant"), 100 / 6, 1e-14)
+        vertical = (*ASKED, "v.csv", "-mu_s", "2")
+        self.refuse(*vertical, message=("its unit is not known", "add -gravity"))
+        self.refuse(*vertical, "-gravity", "4", "-force_scale", "-1", "-friction", "stribeck", "-stribeck_velocity", "1",
+                    message=("-friction = stribeck: does not go with a column vertical",))
+        (self.folder / "v.csv").write_text("time,force,vertical\n0,0,0\n1,0,-5\n2,0,0\n")
+        self.refuse(*vertical, "-gravity", "4", message=("lifts the body off the ground at time 1", "-gravity = 4"))
+        self.run_ok(*vertical, "-gravity", "4", "-force_scale", "0.5")
+        done = self.run_ok(*ASKED, RECORD, "-gravity", "9.81")
+        self.assertIn("-gravity = 9.81 has no effect without a column vertical", done.stderr)
 
     def test_files(self):
         text = self.run_ok(*ASKED, RECORD, "-drag", "none", "-mu_d", "1", "-summary", "s.json", "-output", "h.h5",

@@ -38,6 +38,15 @@ TEST_CASE("effective friction: with a bias, and by direction") {
   CHECK(*effective_mu_s(s, true) == Approx(1.25));
 }
 
+// Levels from -2.25 to 2.25 are all pushed on; 1e-8 lies a ten-millionth of a step above a level.
+TEST_CASE("effective friction: nothing where no level holds, and where no result could tell") {
+  auto s = scene(1, 0.5, 1, 0.75, {1, 0});
+  s.bias = 4;
+  CHECK_FALSE(effective_mu_s(s, false));
+  CHECK_FALSE(effective_mu_s(s, true));
+  CHECK_FALSE(effective_mu_s(scene(1e-8, 1e-8, 1, 0.125, {1, 0}), false));
+}
+
 TEST_CASE("effective friction: levels of a file are what they are") {
   auto s = scene(1.07, 0.5, 1, 0.125, {1, 0});
   s.noise.name = "telegraph";

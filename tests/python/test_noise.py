@@ -2,6 +2,7 @@
 
 import os
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -160,15 +161,15 @@ class OfRecords(unittest.TestCase):
     def test_counts_by_hand(self):
         # Level 0 for 2 samples, up to level 2 over one that is not seen, 2 samples there, 1 on level 1, and back.
         record, x = record_of(numpy.tile([0.0, 0, 2, 2, 1], 40), 0.5), numpy.array([0.0, 1, 2])
-        self.refused("34 % of the jumps lead over more than one level", record, x, "neighbours", False,
+        self.refused("34 % of the jumps lead over more than one level", record, x, "neighbours",
                      function=chains_of_records._counted)
-        spent, jumps, far = chains_of_records._counted(record, x, "any", False)
+        spent, jumps, far = chains_of_records._counted(record, x, "any")
         numpy.testing.assert_array_equal(jumps, [[0, 0, 40], [39, 0, 0], [0, 40, 0]])
         numpy.testing.assert_array_equal(spent, [40, 19.5, 40])  # 39 intervals lead from level 1 to 0
         self.assertAlmostEqual(far, 40 / 119)
         # Within its bin a record counts nothing, however it moves; over a level in between it counts both jumps.
         rough = record_of(numpy.tile([0, 0.9, -0.4, 0.9, 1.1, 0.1, 1.9, 2.2, 1.1, 0.9, -0.1] + 30 * [0, 0.1], 20), 1)
-        spent, jumps, far = chains_of_records._counted(rough, x, "neighbours", False)
+        spent, jumps, far = chains_of_records._counted(rough, x, "neighbours")
         numpy.testing.assert_array_equal(jumps, [[0, 20, 0], [20, 0, 20], [0, 20, 0]])
         self.assertEqual((far, spent.sum()), (0, 71 * 20 - 1))
 
@@ -262,7 +263,8 @@ class OfRecords(unittest.TestCase):
         differences = numpy.diff(filtered(50001, 50, 3))  # a force whose integral is bounded
         self.refused("autocorrelation|lead over more", record_of(differences))
         self.refused("levels: 2 jumps from level .* are too few to count, 10 are needed", record_of(filtered(2000, 1, 1)))
-        self.refused("too few to count, 10 are needed; take fewer levels", record_of(filtered(20000, 1, 2)), [-1, 0, 1, 3.4])
+        self.refused(r"too few to count, 10 are needed; noise.record\(record\) \(levels\) was tried and serves",
+                     record_of(filtered(20000, 1, 2)), [-1, 0, 1, 3.4])
         self.refused("do not change", record_of(numpy.ones(100)))
         self.refused(r"uneven; take record.resampled", Record(numpy.cumsum(1 + 0.3 * numpy.sin(numpy.arange(99.0))),
                                                               numpy.arange(99.0)))
@@ -270,6 +272,36 @@ class OfRecords(unittest.TestCase):
         self.refused("two, rising", record_of(filtered(20000, 1, 2)), [1, 0])
         self.refused("neighbours or any", record_of(swing), jumps="all")
         self.refused("less than twice its memory", record_of(numpy.arange(50.0)))
+
+    def test_ways_that_messages_name_were_tried(self):
+        """Of a shaking that begins and ends, and of steady records; what is named is done as it stands there."""
+        time, records = STEP * numpy.arange(6000), [record_of(filtered(20000, 0.3 + 2j, 7)), record_of(filtered(20000, 2, 4))]
+        for seed in (1, 4):
+            slow = filtered(6000, 1 + 3j, seed) + filtered(6000, 20 + 10j, seed + 1)
+            records.append(record_of(slow * numpy.exp(-((time - 15) / 12) ** 2)))
+        said = []
+        for record in records:
+            for fit in (noise.record, noise.narrow_band_of, noise.filtered_of):
+                try:
+                    fit(record)
+                except ValueError as refused:
+                    said.append((record, str(refused)))
+        self.assertGreaterEqual(len(said), 4)
+        served = 0
+        for record, text in said:
+            for call in re.findall(r"noise\.\w+\(record.*?\)(?= \(levels)", text):
+                eval(call, {"noise": noise, "record": record})  # raises where it does not serve
+                served += 1
+            self.assertRegex(text, "was tried and serves|were tried, and none fits .*given_force")
+        self.assertGreaterEqual(served, 2)
+
+    def test_a_band_of_no_frequency(self):
+        """Correlated noise less a little of its slow part swings slowly by 0.06, for which no frequency can be told."""
+        decay, z = numpy.exp(-0.2), numpy.random.default_rng(5).standard_normal(20000)
+        fast = scipy.signal.lfilter([1], [1, -decay], z)
+        record = Record(0.01 * numpy.arange(20000), fast - 0.5 * scipy.signal.lfilter([0.01], [1, -0.99], fast))
+        self.refused(r"does not swing, or the record is too short to show it: omega is \d", record,
+                     function=noise.narrow_band_of)
 
     def test_a_narrow_band(self):
         record = record_of(0.2 + 1.5 * filtered(100000, 0.3 + 2j, 7))

@@ -614,6 +614,24 @@ class Records(Case):
         numpy.testing.assert_allclose(joined.value, joined.time)
         self.assertRaisesRegex(ValueError, r"step = 0: must be in \(0, inf\); take for example 1", record.resampled, 0)
 
+    def test_arrays_with_a_unit_are_as_a_file_with_it(self):
+        for unit, factor in (("g", G), ("cm/s^2", 0.01), ("gal", 0.01), ("m/s2", 1), ("", 1)):
+            with self.subTest(unit):
+                read = self.read(columns(head="t (s),a"), unit=unit or None)
+                made = stickslip.Record(TIME, VALUE, unit)
+                self.same(made, read.unit, factor)
+                self.assertEqual([note for note in read.notes if "no unit" not in note], list(made.notes))
+                self.assertEqual(stickslip.Record(made.time, made.value, made.unit).value.tolist(), made.value.tolist())
+        made = stickslip.Record(TIME, VALUE, "g")
+        self.assertEqual(made.notes[0], "g became m/s^2: times 9.80665")
+        self.assertIn(f"peak {2.25 * G:.5g} m/s^2 at 0.1 s", repr(made))
+        # What looks wrong is said of what there is: without its mean, nothing is left of an offset.
+        offset = stickslip.Record(TIME, VALUE + 9, "g")
+        self.assertIn("would reach", repr(offset))
+        self.assertNotIn("would reach", repr(offset.centred()))
+        made.save(self.folder / "f.csv")
+        self.assertEqual((self.folder / "f.csv").read_text().splitlines()[:2], ["time,force", "# unit: m/s^2"])
+
     def test_gravity_twice(self):
         record = stickslip.Record(TIME, VALUE, "m/s^2")
         options = {"force_file": record, "drag": "none", "quantities": "given_force"}
@@ -624,7 +642,6 @@ class Records(Case):
         with warnings.catch_warnings():
             warnings.simplefilter("error", UserWarning)
             record.scaled(9.81, "m/s^2")
-            stickslip.Record(TIME, VALUE, "g").scaled(9.81)
             record.scaled(-1)
 
     def test_records_where_something_else_is_wanted(self):

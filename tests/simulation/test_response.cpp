@@ -87,6 +87,31 @@ TEST_CASE("response: a block that never slides upslope") {
   }
 }
 
+TEST_CASE("response: a velocity at the first sample, under friction that grows with the load") {
+  // u' = -mu (1 + s t) from u(0) = v.
+  constexpr double v = 3, mu = 0.5, s = 0.1;
+  const double stop = (std::sqrt(1 + 2 * s * v / mu) - 1) / s;
+  const double path = v * stop - mu * stop * stop * (1.0 / 2 + s * stop / 6);
+  const ForceRecord r{.time = {0, 10}, .force = {0, 0}, .load = {1, 1 + 10 * s}};
+  for (double sign : {1, -1}) {
+    const Response found = respond(process({mu, mu}, {0, 0}), r, sign * v);
+    CHECK(found.x.back() == Approx(sign * path).epsilon(1e-14));
+    CHECK(found.v.front() == sign * v);
+    REQUIRE(found.slips.size() == 1);
+    CHECK(found.slips[0].end == Approx(stop).epsilon(1e-14));
+    CHECK(found.slips[0].peak == v);
+  }
+}
+
+TEST_CASE("response: a load that falls lets a body go") {
+  // 1.5 (1 - t/2) holds a force of 1 until t = 2/3; from there on u' = t/2.
+  const ForceRecord r{.time = {0, 1}, .force = {1, 1}, .load = {1, 0.5}};
+  const Response found = respond(process({1.5, 1}, {0, 0}), r);
+  CHECK(found.slips.at(0).begin == Approx(2.0 / 3).epsilon(1e-14));
+  CHECK(found.v.back() == Approx(5.0 / 36).epsilon(1e-14));
+  CHECK(found.x.back() == Approx(7.0 / 324).epsilon(1e-14));
+}
+
 TEST_CASE("response: a push and what follows it, with linear drag") {
   // A force F for a time T, then none; b = -c v.
   constexpr double c = 0.8, mu_s = 1, mu_d = 0.6, force = 2, time = 1.5;

@@ -84,10 +84,10 @@ inline constexpr Entry kGivenForce{
     .quantity = own_quantity("given_force"),
     .word = "given_force",
     .synonyms = "newmark, sliding_block, response, time_history",
-    .title = "motion from rest under the force of -force_file, as trajectory with that option",
+    .title = "motion under the force of -force_file",
     .routes = {Route::excursion},
     .options = "force_file, force_interpolation, force_scale, force_rest, sample_layout, "
-               "sample_step",
+               "sample_step, gravity, start",
     .rows = kGivenForceRows,
     .without_system = true,
     .without_limit = true};

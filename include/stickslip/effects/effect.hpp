@@ -103,6 +103,9 @@ struct Choice {
 [[nodiscard]] const Choice& drags();
 [[nodiscard]] std::span<const Choice* const> choices();
 
+/// Whether an option is of a choice, or of its effects, and none in use knows it.
+[[nodiscard]] bool is_idle(const model::Scene& scene, std::string_view option);
+
 /// Puts the values of the options of an effect into a scene; what is missing is refused.
 void read_effect(Given& given, const Choice& choice, const std::string& word, model::Scene& scene);
 

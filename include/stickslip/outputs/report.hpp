@@ -40,8 +40,9 @@ struct Report {
   Subject subject = Subject::run;
   MPI_Comm comm = MPI_COMM_NULL;  ///< the ranks that have the report
   Texts provenance, options;      ///< where it comes from, and every option as used
-  double seconds = 0;             ///< wall time of all
-  std::string text;               ///< for people
+  std::vector<std::string> warnings = {};
+  double seconds = 0;  ///< wall time of all
+  std::string text;    ///< for people
   /// Everything but provenance, fields and paths, by the keys of docs/output.md. It is made when
   /// called, as are rows and grid: those of a long sweep take memory.
   std::function<Json()> tree;

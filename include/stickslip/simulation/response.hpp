@@ -16,7 +16,7 @@ struct Slip {
   double peak = 0;            ///< largest |v| [velocity]
 };
 
-/// What a force does to a body at rest.
+/// What a force does to a body.
 struct Response {
   std::vector<double> v = {}, x = {};  ///< velocity and displacement at the samples
   std::vector<Slip> slips = {};
@@ -24,12 +24,13 @@ struct Response {
   double farthest = 0, fastest = 0;  ///< largest |x| and |v|
 };
 
-/// The motion under a record in the place of the noise, from rest at its first sample. Friction,
-/// drag and bias are those of the process. Where drag is linear, velocities follow closed forms
-/// from one event to the next: static friction that is overcome, a body that stops or turns round.
-/// Otherwise they follow Taylor series of order 14, in steps of at most `stride` of the length at
-/// which these are right to rounding. Local. O(samples), the series 2 microseconds a step.
+/// The motion under a record in the place of the noise, from a velocity at its first sample.
+/// Friction, drag and bias are those of the process; a record with a load goes with Coulomb
+/// friction alone. Where drag is linear, velocities follow closed forms from one event to the next:
+/// static friction that is overcome, a body that stops or turns round. Otherwise they follow Taylor
+/// series of order 14, in steps of at most `stride` of the length at which these are right to
+/// rounding. Local. O(samples), the series 2 microseconds a step.
 [[nodiscard]] Response respond(const model::Process& process, const model::ForceRecord& record,
-                               double stride = 1);
+                               double velocity = 0, double stride = 1);
 
 }  // namespace stickslip::simulation

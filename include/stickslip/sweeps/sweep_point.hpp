@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <string>
 
-#include "stickslip/cases/case.hpp"
+#include "stickslip/options/request.hpp"
 #include "stickslip/quantities/results.hpp"
 
 namespace stickslip::sweeps {
@@ -23,12 +23,13 @@ struct SweepPoint {
   std::string message;          ///< what fell short; empty if nothing did
   quantities::Results results;  ///< values that are not finite are NaN
   double seconds = 0;           ///< that it took
-  std::string entry;            ///< the same and scene, accuracy, cost, plan: an entry of `runs`
+  std::string entry;  ///< the same and scene, warnings, accuracy, cost, plan: an entry of `runs`
 };
 
 /// Computes a point on its own; failures of solvers and of memory become its status. Collective.
 /// Throws what is no stickslip::Failure.
-[[nodiscard]] SweepPoint compute_run(MPI_Comm comm, const cases::Case& given, std::size_t point);
+[[nodiscard]] SweepPoint compute_run(MPI_Comm comm, const options::Request& given,
+                                     std::size_t point);
 
 /// A point at which the model cannot be computed, for the reason given. Local.
 [[nodiscard]] SweepPoint refused_run(std::size_t point, const std::string& reason);

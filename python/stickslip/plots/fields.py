@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING
 
 from ..needed import needed
 from ..results import Results
-from .style import (ABSCISSAE, COLOURS, Figure, Line2D, Patch, drag, matplotlib, number, numpy, parameters, stated,
-                    styled, title)
+from .style import (ABSCISSAE, COLOURS, Figure, Line2D, Patch, matplotlib, number, numpy, parameters, styled, title, units,
+                    users, without)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -120,25 +120,24 @@ def given_force(items: Sequence[Results]) -> "Figure":
     (results,) = items
     figure = Figure(figsize=(7.2, 5.2))
     rows = figure.subplots(3, 1, sharex=True)
-    for axes, (key, label, colour) in zip(rows, (("path_force", "force $x$\n[force]", FORCING),
-                                                 ("path_velocity", "velocity $v$\n[velocity]", SLIDE),
-                                                 ("path_displacement", "displacement\n[length]", SLIDE))):
+    of_record = results["path_force"].unit not in ("", "force")  # whose units results then have
+    for axes, (key, label, unit, colour) in zip(rows, (("path_force", "force $x$", "force", FORCING),
+                                                       ("path_velocity", "velocity $v$", "velocity", SLIDE),
+                                                       ("path_displacement", "displacement", "length", SLIDE))):
         if "slip_begin" in results:
             shade(axes, results["slip_begin"].value, results["slip_end"].value)
         axes.plot(results[key].abscissa, results[key].value, color=colour, linewidth=1.1)
-        axes.set_ylabel(label)
+        axes.set_ylabel(f"{label}\n{units(results[key].unit if of_record else unit).strip()}")
     if results.options:
         for sign, mu in ((1, "mu_s"), (-1, "mu_s_minus")):
             mu = number(results, mu if results.options.get(mu) else "mu_s")
             level = sign * mu - number(results, "bias")
             if abs(level) < 2 * abs(results["path_force"].value).max():
                 rows[0].axhline(level, color="#777777", linewidth=1, linestyle="--")
-        names = ("mu_s", "mu_d", "bias", "force_file", "force_scale")
-        used = {name: text for name, text in parameters(results).items() if name in names}
-        figure.suptitle(", ".join([*(stated(name, text) for name, text in used.items()),
-                                   f"$b(v) = {drag(results)}$"]), fontsize=10)
+        noise = [name for name in parameters(results) if name == "noise" or "noise" in users(results, name)]
+        figure.suptitle(title(without(results, noise)), fontsize=10)
     rows[0].margins(x=0)
-    rows[2].set_xlabel(ABSCISSAE["time"])
+    rows[2].set_xlabel("time $t$  [s]" if of_record else ABSCISSAE["time"])
     return figure
 
 

@@ -224,9 +224,9 @@ def drag(results: Results) -> str:
 
 
 def without(results: Results, names: Collection[str]) -> Results:
-    """The same results, as if the options of these names had not been given, for a title that leaves them out."""
+    """The same results, as if the options of these names had no effect, for a title that leaves them out."""
     other = copy.copy(results)
-    other.options = {name: text for name, text in results.options.items() if name not in names}
+    other.options = {**results.options, **dict.fromkeys(names, "")}
     return other
 
 

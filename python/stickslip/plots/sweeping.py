@@ -13,6 +13,7 @@ from .style import (COLOURS, MARKERS, STYLES, WORDS, Figure, bars, decades, know
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+RING = {"linestyle": "", "marker": "o", "markersize": 10, "markerfacecolor": "none"}  # around points
 FEW = 5  # curves distinguished by colour and line style
 DRIFT = (("E_V", "drift $E[V]$"), ("diffusivity", "diffusivity $S_0/2$"), ("P_stick", "probability of sticking"))
 
@@ -23,7 +24,7 @@ def each(sweep: Sweep) -> "dict[str, Figure]":
 
     One option is an axis, errors are bars; of two options the second is the axis and the first one distinguishes
     curves, up to five values, or makes a map of more. Further options stay at their first value, which the title
-    shows. Points that fell short are marked by crosses. An array of more places than the last option has values is
+    shows. Points that fell short are marked by crosses, those that warnings concern by rings. An array of more places than the last option has values is
     drawn against its abscissa, a curve for each value of the last option; any other against the last option, a curve for
     each place of its abscissa. There are at most five curves, as the title says; the other options stay at their first
     value.
@@ -73,7 +74,7 @@ def _against_option(axes: "Axes", sweep: Sweep, result: Result) -> None:
     for n, place in enumerate(shown):
         curve(axes, x, result.value[first][:, place], result.error[first][:, place], n,
               f"${sign}$ = {result.abscissa[place]:g}" if sign else f"{result.abscissa_name} = {result.abscissa[place]:g}",
-              None if result.ci95 is None else result.ci95[first][:, place], (sweep.status == "reached")[first])
+              None if result.ci95 is None else result.ci95[first][:, place], sweep, first)
     axes.set(xscale=scale(x), xlabel=_label(sweep, last), ylabel=_label(sweep, result.key))
     _title(axes, sweep, others, len(shown), len(result.abscissa))
     axes.legend()
@@ -83,17 +84,18 @@ def _scalar(sweep: Sweep, result: Result) -> "Figure":
     figure = Figure(figsize=(6.4, 4.2))
     axes = figure.subplots()
     names, first = sweep.dims[:2], (slice(None),) * min(2, len(sweep.dims)) + (0,) * (len(sweep.dims) - 2)
-    value, error, reached = result.value[first], result.error[first], (sweep.status == "reached")[first]
+    value, error = result.value[first], result.error[first]
     ci95 = None if result.ci95 is None else result.ci95[first]
     _title(axes, sweep, sweep.dims[2:])
     if len(names) == 2 and len(value) > FEW:
-        _map(figure, axes, sweep, result, value, reached)
+        _map(figure, axes, sweep, result, first)
         return figure
     x = sweep.coords[names[-1]]
     rows = [numpy.s_[:]] if len(names) == 1 else range(len(value))
     for n, row in enumerate(rows):
         label = f"{symbol(names[0])} = {sweep.coords[names[0]][n]:g}" if len(names) == 2 else None
-        curve(axes, x, value[row], error[row], n, label, None if ci95 is None else ci95[row], reached[row])
+        at = first if len(names) == 1 else (row, *first[1:])
+        curve(axes, x, value[row], error[row], n, label, None if ci95 is None else ci95[row], sweep, at)
     if len(names) == 2:
         axes.legend()
     axes.set(xscale=scale(x), xlabel=_label(sweep, names[-1]), ylabel=_label(sweep, result.key))
@@ -103,17 +105,20 @@ def _scalar(sweep: Sweep, result: Result) -> "Figure":
 
 
 def curve(axes: "Axes", x: "numpy.ndarray", value: "numpy.ndarray", error: "numpy.ndarray", n: int = 0,
-          label: str | None = None, ci95: "numpy.ndarray | None" = None,
-          reached: "numpy.ndarray | None" = None) -> None:
-    """A scalar against a swept option: line and error bars; marks with intervals where simulated."""
+          label: str | None = None, ci95: "numpy.ndarray | None" = None, sweep: Sweep | None = None,
+          at: tuple = ()) -> None:
+    """A scalar against a swept option: line and error bars; marks with intervals where simulated. Of the points of a sweep
+    at an index those that fell short and those that warnings concern are marked."""
     colour, order = COLOURS[n % len(COLOURS)], numpy.argsort(x)
     if ci95 is not None:
         bars(axes, x[order], value[order], ci95[order], colour, label, MARKERS[n % 5])
     else:
         axes.errorbar(x[order], value[order], yerr=error[order], color=colour, marker=MARKERS[n % 5],
                       linestyle=STYLES[n % len(STYLES)], markersize=4, capsize=2, label=label)
-    if reached is not None:
-        axes.plot(x[~reached], value[~reached], linestyle="", marker="x", markersize=9, color=colour)
+    if sweep is not None:
+        short, warned = (sweep.status != "reached")[at], sweep.concerned[at]
+        axes.plot(x[short], value[short], linestyle="", marker="x", markersize=9, color=colour)
+        axes.plot(x[warned], value[warned], color=colour, **RING)
 
 
 def _edges(values: "numpy.ndarray") -> "numpy.ndarray":
@@ -121,8 +126,8 @@ def _edges(values: "numpy.ndarray") -> "numpy.ndarray":
     return numpy.exp(cells_around(numpy.log(values))) if scale(values) == "log" else cells_around(values)
 
 
-def _map(figure: "Figure", axes: "Axes", sweep: Sweep, result: Result, value: "numpy.ndarray",
-         reached: "numpy.ndarray") -> None:
+def _map(figure: "Figure", axes: "Axes", sweep: Sweep, result: Result, at: tuple) -> None:
+    value = result.value[at]
     down, across = sweep.dims[:2]
     y, x = sweep.coords[down], sweep.coords[across]
     rows, columns = numpy.argsort(y), numpy.argsort(x)
@@ -135,8 +140,9 @@ def _map(figure: "Figure", axes: "Axes", sweep: Sweep, result: Result, value: "n
     if len(columns) > FEW and known.count() > FEW and known.max() > known.min():  # numpy.ptp of NumPy 2 ignores masks
         lines = axes.contour(x[columns], y[rows], known, colors="white", linewidths=0.8)
         axes.clabel(lines, fontsize=7)
-    short = numpy.argwhere(~reached)
-    axes.plot(x[short[:, 1]], y[short[:, 0]], linestyle="", marker="x", color="white")
+    for marked, look in ((sweep.status != "reached", {"linestyle": "", "marker": "x"}), (sweep.concerned, RING)):
+        where = numpy.argwhere(marked[at])
+        axes.plot(x[where[:, 1]], y[where[:, 0]], color="white", **look)
     figure.colorbar(mesh, label=_label(sweep, result.key))
     for axis, values in ((axes.xaxis, x), (axes.yaxis, y)):
         if scale(values) == "log":
@@ -148,7 +154,7 @@ def _title(axes: "Axes", sweep: Sweep, held: Sequence[str], shown: int = 0, coun
     """The parameters that were not swept; in another line the first values of those that the picture holds, and how many
     curves of all are shown."""
     first = [f"{symbol(name)} = {sweep.coords[name][0]:g}, the first of {len(sweep.coords[name])} values" for name in held]
-    picked = [f"{shown} of {count} values"] * (shown < count)
+    picked = [f"{shown} of {count} values"] * (shown < count) + ["rings: points with warnings"] * bool(sweep.concerned.any())
     axes.set_title("\n".join(filter(None, [title(without(sweep, sweep.dims)), ", ".join([*first, *picked])])), fontsize=9)
 
 

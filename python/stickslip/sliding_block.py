@@ -1,0 +1,81 @@
+"""Newmark's sliding block: the motion of a block on ground that shakes."""
+
+import re
+from typing import Any
+
+from . import units
+from .calls import run
+from .program import BadInput
+from .records import Record
+from .reference import with_options
+from .results import Results
+
+HELD = 1e9  # yield acceleration of the direction in which a block on a slope never slides
+
+
+@with_options
+def newmark(record: Record, yield_acceleration: float | str, one_way: bool = False, **options: Any) -> Results:
+    """The sliding block of Newmark (1965) under a recorded acceleration of the ground.
+
+    The block moves with the ground until that accelerates it by more than the yield acceleration; then it slides against
+    friction that is as large. Displacements are those of the block beside the ground, positive in the direction in which the
+    record counts accelerations as positive: `quantities="given_force"` without drag, under minus the record.
+
+    Parameters
+    ----------
+    record
+        Acceleration of the ground, with `vertical` if wanted; `read_record` reads one.
+    yield_acceleration
+        A number in the unit of the record, or text with a unit, such as "0.1g".
+    one_way
+        Whether the block slides in the positive direction alone, as downhill on a slope. `record.scaled(-1)` has the other
+        direction.
+    **options
+        As for `run`, such as start="0,0.5" for a velocity at the beginning, or mu_d for less friction while it slides.
+
+    Returns
+    -------
+    results
+        `final_displacement`, `largest_displacement`, `largest_speed`, `slip_count`, the slips (`slip_begin`, `slip_end`,
+        `slip_displacement`, `slip_peak`) and the path (`path_velocity`, `path_displacement`), in m and s where the record is
+        in m/s^2. `plot()` draws them.
+
+    Raises
+    ------
+    BadInput
+        If the yield acceleration has a unit and the record has none, or another one; else as `run`.
+
+    Examples
+    --------
+    >>> r = stickslip.newmark(stickslip.read_record("record.AT2"), "0.1g", one_way=True)
+    >>> r["final_displacement"]
+    """
+    friction = _in_unit_of(record, yield_acceleration)
+    held = {"mu_s_minus": HELD, "mu_d_minus": HELD} if one_way else {}
+    return run(**{"quantities": "given_force", "force_file": record.scaled(-1), "drag": "none", "mu_s": friction,
+                  "mu_d": friction, **held, **options})
+
+
+def _in_unit_of(record: Record, acceleration: float | str) -> float:
+    """An acceleration, with a unit perhaps, in the unit of a record."""
+    parts = re.fullmatch(r"\s*([-+]?[\d.]+(?:[eE][-+]?\d+)?)\s*(.*?)\s*", str(acceleration))
+    if parts is None:
+        raise BadInput(f"yield_acceleration = {acceleration}: must be a number, perhaps with a unit; write for example 0.1g")
+    factor, unit = units.in_si(parts[2])
+    if unit not in ("", record.unit):
+        of_record = f"is in {record.unit}" if record.unit else "has no unit"
+        raise BadInput(f"yield_acceleration = {acceleration}: is in {parts[2]}, and the record {of_record}; give the unit of "
+                       'the record, as in read_record(path, unit="g"), or the number alone')
+    return float(parts[1]) * factor
+
+
+def table(results: Results) -> str:
+    """What a block did, a line for each slip."""
+    keys = ("slip_begin", "slip_end", "slip_displacement", "slip_peak")
+    lines = [repr(results[key]) for key in ("final_displacement", "largest_displacement", "largest_speed")]
+    if "slip_begin" not in results:
+        return "\n".join([*lines, "no slips"])
+    heads = [f"{key.removeprefix('slip_')} [{results[key].unit}]" for key in keys]
+    rows = zip(*(results[key].value for key in keys))
+    return "\n".join([*lines, "slip" + "".join(f"{head:>24}" for head in heads), *(
+        f"{n:4}" + "".join(f"{value:24.10g}" for value in row) for n, row in enumerate(rows, 1))])
