@@ -19,7 +19,7 @@ QUESTIONS = {
     "displacement": "time start", "expectation": "observable time start", "relaxation": "", "sensitivity": "",
     "large_deviation": "tilt", "displacement_transform": "time start wavenumber",
     "displacement_distribution": "time start distance probability"}
-LEAST_ACCURACY = {"displacement_distribution": 1e-2, "passage_distribution": 1e-3}
+LEAST_ACCURACY = {"displacement_distribution": 3e-2, "passage_distribution": 1e-3}
 
 
 def numbers(low, high, count):
@@ -129,7 +129,7 @@ def drawn(random):
     if "friction" not in options and "mu_s_minus" not in options and options["mu_d"] < 1 and random.random() < 0.15:
         options |= {"friction": "stribeck", "stribeck_velocity": log_uniform(random, 0.05, 2)}
     quantity = random.choice(sorted(QUESTIONS))
-    accuracy = max(random.choice((1e-2, 1e-4, 1e-6)), LEAST_ACCURACY.get(quantity, 0))
+    accuracy = max(random.choice((1e-2, 1e-3, 1e-5)), LEAST_ACCURACY.get(quantity, 0))
     options |= {"quantities": f"sticking,moments,{quantity}", "accuracy": accuracy}
     for argument in QUESTIONS[quantity].split():
         options[argument] = ARGUMENTS[argument](random, options)

@@ -126,7 +126,7 @@ def displacement_distribution(ask, options, random):
     mean, deviation = float(f["displacement_mean"].value[0]), math.sqrt(max(0, float(f["displacement_variance"].value[0])))
     begin = mean + random.uniform(-1.5, 0.5) * deviation
     step = deviation / STEPS
-    f = ask("displacement_distribution", time=end, start=start, accuracy=1e-2, probability=(0.25, 0.5),
+    f = ask("displacement_distribution", time=end, start=start, accuracy=3e-2, probability=(0.25, 0.5),
             distance=grid(begin + step * STEPS, begin))
     if not begin < float(f["displacement_atom_at"].value[0]) < begin + step * STEPS or f["displacement_atom"].value[0] == 0:
         yield from of_distribution(f, "displacement_density#0", "displacement_cdf#0", step)

@@ -27,12 +27,17 @@ def states(options):
     """The noise as a chain of states in Python, or None."""
     if isinstance(options["noise"], noise.Chain):
         return options["noise"]
-    if "levels" in options:
-        x, up, down = numpy.array(options["levels"]).T
-        return noise.Chain(x, scipy.sparse.diags([up[:-1], down[1:]], [1, -1]))
     word = options["noise"]
-    if word == "ou" and "noise_levels" in options:
-        return noise.ou(options["noise_deviation"], options["tau"], options["delta"], options["noise_levels"])
+    if word == "ou" and "noise_levels" in options:  # the chain of the paper, which leaves its ends at the rate of all jumps
+        share, most = (options["noise_deviation"] / options["delta"]) ** 2 / options["tau"], options["noise_levels"]
+        i = numpy.arange(-most, most + 1)
+        up = share * (1 - i * (options["delta"] / options["noise_deviation"]) ** 2 / 2)
+        up[0], up[-1] = 2 * share, 0
+        x, down = options["delta"] * i, up[::-1]
+    elif "levels" in options:
+        x, up, down = numpy.array(options["levels"]).T
+    if word == "file" or (word == "ou" and "noise_levels" in options):
+        return noise.Chain(x, scipy.sparse.diags([up[:-1], down[1:]], [1, -1]))
     if word == "telegraph":
         return noise.telegraph(options["telegraph_amplitude"], options["telegraph_rate"])
     if word == "periodic":
