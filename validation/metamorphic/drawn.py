@@ -42,19 +42,22 @@ ARGUMENTS = {
     "passage": lambda random, options: random.choice(("both", "up", "down")), "start": start}
 
 
-def ou(random):
-    """With the levels that the program chooses, or fewer."""
-    options = cases.quick(random) | {"noise": "ou"}
+def ou(random, scene=cases.quick):
+    """With the levels that the program chooses, or fewer; by the upwind scheme now and then. Fine steps take long."""
+    options = scene(random) | {"noise": "ou"}
     options["noise_deviation"] = options["tau"] ** -0.5 * random.uniform(1, 1.5)
+    if options["noise_deviation"] > 4 * options["delta"]:
+        return ou(random, scene)
     if random.random() < 0.5:
         most = 2 * (options["noise_deviation"] / options["delta"]) ** 2
         options["noise_levels"] = max(1, min(int(most), random.randint(2, 10)))
+    if random.random() < 0.1:
+        options |= {"scheme": "upwind", "p": 4}
     return options
 
 
-def stribeck(random):
-    options = cases.weakening(random)
-    return options | {"noise": "ou", "noise_deviation": options["tau"] ** -0.5}
+def weakening(random):
+    return ou(random, cases.weakening)
 
 
 def friction_and_drag(random):
@@ -119,7 +122,7 @@ def named(random):
     return options
 
 
-SCENES = {"ou": ou, "ou, weakening": stribeck, "levels": levels, "any states": chain, "by name": named}
+SCENES = {"ou": ou, "ou, weakening": weakening, "levels": levels, "any states": chain, "by name": named}
 
 
 def drawn(random):

@@ -6,7 +6,7 @@ import math
 import numpy
 from values import Value, integral
 
-STEPS = 32  # of integrals, an even number of pairs
+STEPS = 16  # of integrals, an even number of pairs
 
 
 def grid(end, begin=0.0):

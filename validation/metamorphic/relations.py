@@ -104,8 +104,8 @@ def mirror(options, random):
 
 
 def other_units(options, random):
-    """Time and length in units that are powers of two: only exponents of numbers change."""
-    time, length = (2.0 ** random.choice((-30, -7, 5, 20)) for _ in range(2))
+    """Time and length in units that are powers of four: only exponents of numbers change, also in square roots."""
+    time, length = (2.0 ** random.choice((-30, -8, 6, 20)) for _ in range(2))
     units = {"time": time, "length": length, "velocity": length / time, "force": length / time**2}
 
     def size(unit):
@@ -212,7 +212,7 @@ def no_symmetry(options, random):
 
 def each_level(options, random):
     """Every level of the noise as a node."""
-    return None if options["noise"] != "ou" or "noise_levels" in options else (options | {"noise_degree": 0}, same)
+    return None if options["noise"] != "ou" or "scheme" in options else (options | {"noise_degree": 0}, same)
 
 
 CELLS = ("f_", "displacement_density", "fwhm", "t_corr")  # histograms, and what a sample cannot have
