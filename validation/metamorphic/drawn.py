@@ -19,7 +19,7 @@ QUESTIONS = {
     "displacement": "time start", "expectation": "observable time start", "relaxation": "", "sensitivity": "",
     "large_deviation": "tilt", "displacement_transform": "time start wavenumber",
     "displacement_distribution": "time start distance probability"}
-LEAST_ACCURACY = {"displacement_distribution": 3e-2, "passage_distribution": 1e-3}
+LEAST_ACCURACY = {"displacement_distribution": 3e-2, "slip": 1e-3, "duration_density": 1e-3, "passage_distribution": 1e-3}
 
 
 def numbers(low, high, count):

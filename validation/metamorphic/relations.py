@@ -28,7 +28,7 @@ def states(options):
     if isinstance(options["noise"], noise.Chain):
         return options["noise"]
     word = options["noise"]
-    if word == "ou" and "noise_levels" in options:  # the chain of the paper, which leaves its ends at the rate of all jumps
+    if word == "ou" and "noise_levels" in options:  # the chain of the paper: all jumps have one rate, also at its ends
         share, most = (options["noise_deviation"] / options["delta"]) ** 2 / options["tau"], options["noise_levels"]
         i = numpy.arange(-most, most + 1)
         up = share * (1 - i * (options["delta"] / options["noise_deviation"]) ** 2 / 2)
@@ -56,8 +56,8 @@ def with_noise(options, made):
 EXCHANGED = {"h_plus": "h_minus_from_minus", "h_minus": "h_plus_from_minus", "w_one": "w_one_from_minus",
              "entry_law": "entry_law_minus", "u(f)": "u_minus(f)", "mu(f)": "mu_minus(f)", "w_plus(f)": "w_minus(f)"}
 EXCHANGED |= {there: here for here, there in EXCHANGED.items()}
-ODD = ("E_V", "mean_slip_net", "displacement_mean", "displacement_atom_at", "displacement_sine", "displacement_quantile",
-       "tilted_velocity")
+ODD = {"E_V", "mean_slip_net", "displacement_mean", "displacement_atom_at", "displacement_sine",
+       "displacement_quantile", "tilted_velocity"}
 
 
 def mirror(options, random):
@@ -225,6 +225,6 @@ def simulated(options, random):
     return other, lambda key, value, answer: None if key.startswith(CELLS) else (key, value)
 
 
-TRANSFORMATIONS = {f.__name__: f for f in (mirror, other_units, permuted, split, as_states, zero_noise, looser, thresholds,
-                                           no_symmetry, each_level, simulated)}
+TRANSFORMATIONS = {f.__name__: f for f in (mirror, other_units, permuted, split, as_states, zero_noise, looser,
+                                           thresholds, no_symmetry, each_level, simulated)}
 EXACT = {"other_units": 1e-12}  # only exponents of numbers differ: relative to the largest value of a key
