@@ -23,8 +23,8 @@ from harness import ROOT, parser
 
 CASES = ("paths", "averages", "points", "spectra", "correlation_time", "laplace", "durations",
          "extrapolation", "limit", "cost", "scan", "effects", "weakening", "noises", "queues", "chains", "slips",
-         "displacements", "fits", "calibration", "combinations", "hard", "faults")  # in the order of the paper
-LONGEST = ("displacements", "fits", "noises", "calibration", "combinations", "slips", "hard",
+         "displacements", "fits", "calibration", "metamorphic", "hard", "faults")  # in the order of the paper
+LONGEST = ("displacements", "fits", "noises", "calibration", "metamorphic", "slips", "hard",
            "extrapolation")  # they begin first
 
 

@@ -89,6 +89,15 @@ void share_between_means(const ErrorPerChange& factor, const Results& results, C
   }
 }
 
+void limit_fall(const ErrorPerChange& factor, const Results& coarse, const Results& results,
+                Changes& errors) {
+  for (std::size_t r = 0; r < results.size(); ++r) {
+    if (!is_mean(results[r]) && results[r].kind != Kind::share) continue;
+    const double least = coarse[r].error[0] / factor.most_fall;
+    if (std::isfinite(least)) errors[r][0] = std::max(errors[r][0], least);
+  }
+}
+
 void share_between_neighbours(std::vector<double>& errors, const Result& result) {
   if (result.is_scalar() || quantities::over_modes(result)) return;
   const std::vector<double> own = errors;
@@ -137,6 +146,7 @@ Changes add_discretisation(const ErrorPerChange& factor, const Results& coarse,
     }
   }
   share_between_means(factor, results, errors);
+  if (!before.empty()) limit_fall(factor, coarse, results, errors);
   for (std::size_t r = 0; r < results.size(); ++r) {
     share_between_neighbours(errors[r], results[r]);
     for (std::size_t e = 0; e < errors[r].size(); ++e) results[r].error[e] += errors[r][e];

@@ -15,7 +15,7 @@ namespace {
 // do. For each degree, at low degrees for this one; see validation/calibration.
 // Where no element follows waves of a spectrum, they come and go with the degree.
 constexpr ErrorPerChange kHpErrorPerChange{
-    .last = 0.07, .earlier = 0.0035, .alone = 2.2, .of_waves = 1.5};
+    .last = 0.07, .earlier = 0.0035, .alone = 2.2, .of_waves = 1.5, .most_fall = 16};
 constexpr int kLeastDegreeOfErrors = 10;
 // Under the levels of a table errors fall in uneven steps, of which the change before tells more,
 // and the other family of means: all changes of one are small at once now and then.

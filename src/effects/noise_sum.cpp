@@ -73,10 +73,17 @@ model::LevelTable levels_of_sum(const model::Scene& scene) {
   States all{{0}, {}};
   for (const auto& word : words_of(scene)) {
     const auto chain = made_part(scene, word).meant().noise;
-    // By the numbers that the noise gives its states, so that those of the sum can be told apart.
-    const auto number = [&chain](int level) {
+    // In the order that the noise gives its states, so that those of the sum can be told apart;
+    // some may be left out.
+    const auto listed = [&chain](int level) {
       return chain.table ? chain.table->listed(level)
                          : static_cast<std::size_t>(level - chain.lowest());
+    };
+    std::vector<std::size_t> kept;
+    for (int i = chain.lowest(); i <= chain.highest(); ++i) kept.push_back(listed(i));
+    std::ranges::sort(kept);
+    const auto number = [&](int level) {
+      return static_cast<std::size_t>(std::ranges::lower_bound(kept, listed(level)) - kept.begin());
     };
     States part;
     part.x.resize(static_cast<std::size_t>(chain.count()));

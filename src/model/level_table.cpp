@@ -220,6 +220,9 @@ LevelTable LevelTable::within(int low, int high) const {
   part.lowest_ = low;
   part.levels_.assign(levels_.begin() + (low - lowest_), levels_.begin() + (high - lowest_ + 1));
   part.levels_.front().down = part.levels_.back().up = 0;
+  if (!order_.empty()) {
+    part.order_.assign(order_.begin() + (low - lowest_), order_.begin() + (high - lowest_ + 1));
+  }
   return part;
 }
 

@@ -114,6 +114,19 @@ TEST_CASE("estimates: a change through zero is no small error, as the other mean
                {std::hypot(3, 10 * shared), 1e-9 + 4 * shared, std::hypot(0.8, 2 * shared)});
 }
 
+TEST_CASE("estimates: where errors of means fall too fast, changes were small by accident") {
+  constexpr double small = 0x1p-20;
+  const Results coarse{scalar(catalogue::kEV2, 4, 1), scalar(catalogue::kEAbsV, 2, 0),
+                       scalar(catalogue::kPStick, 0.5, 2), scalar(catalogue::kFStick0, 1, 1)};
+  const Results means{scalar(catalogue::kEV2, 4, small), scalar(catalogue::kEAbsV, 2, 0),
+                      scalar(catalogue::kPStick, 0.5, 0), scalar(catalogue::kFStick0, 1, 0)};
+  Results first = means, second = means;
+  (void)add_discretisation({.most_fall = 16}, coarse, {}, first);  // of two, nothing fell yet
+  check_errors(first, {small, 0, 0, 0});
+  (void)add_discretisation({.most_fall = 16}, coarse, {{0}, {0}, {0}, {0}}, second);
+  check_errors(second, {small + 1.0 / 16, 0, 2.0 / 16, 0});
+}
+
 TEST_CASE("estimates: durations and functions of the velocity share errors among themselves") {
   const Results means{scalar(catalogue::kMeanSlide, 10, 0),
                       scalar(catalogue::kMeanExcursion, 20, 0),

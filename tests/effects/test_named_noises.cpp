@@ -186,6 +186,22 @@ TEST_CASE("pulses: mean and variance are those of shot noise") {
   CHECK_THAT(said_of(with(kPulses, {{"pulse_duration", "1e6"}})), Catch::Contains("at most 4000"));
 }
 
+// Levels of many pulses at once are left out, the first ones in the order of forces.
+TEST_CASE("sums of noises: pulses downwards are the mirror image of those upwards") {
+  const auto sum_with = [](const char* sign) {
+    return scene_of(with(kPulses, {{"noise", "pulses+telegraph"},
+                                   {"pulse_duration", "0.5"},
+                                   {"pulse_sign", sign},
+                                   {"telegraph_amplitude", "0.5"},
+                                   {"telegraph_rate", "1"}}));
+  };
+  const auto up = sum_with("up"), down = sum_with("down");
+  CHECK(table_of(up).highest() - table_of(up).lowest() ==
+        table_of(down).highest() - table_of(down).lowest());
+  CHECK(near(table_of(down).mean(), -table_of(up).mean(), 1e-12));
+  CHECK(near(table_of(down).variance(), table_of(up).variance(), 1e-12));
+}
+
 TEST_CASE("sums of noises: states are pairs, moments add up, options go to their noise") {
   const auto both = with(kSine, {{"noise", "periodic+ou"},
                                  {"period_phases", "16"},

@@ -160,6 +160,15 @@ LevelTable two_telegraphs(double a, double b, double of_a, double of_b) {
 
 }  // namespace
 
+TEST_CASE("level table: levels of a part keep their numbers in the list") {
+  const LevelTable table({0, -1, -2, -3},
+                         {{0, 1, 1}, {1, 0, 2}, {1, 2, 1}, {2, 1, 3}, {2, 3, 1}, {3, 2, 4}});
+  REQUIRE(table.neighbours_only());
+  const LevelTable part = table.within(-2, -1);
+  CHECK(part.listed(-2) == 2);
+  CHECK(part.listed(-1) == 1);
+}
+
 TEST_CASE("level table: jumps of any length are known by level, in rising order of x") {
   const LevelTable table({0.5, -1, 2}, {{0, 1, 3}, {1, 2, 5}, {2, 0, 7}, {1, 0, 11}});
   REQUIRE_FALSE(table.neighbours_only());
