@@ -261,7 +261,7 @@ TEST_CASE("displacement distribution: quantiles lie within their errors, as far 
 
 // Most bodies have not turned round yet and lie in a cluster of a tenth of the deviation of all.
 // Simulated, by 2.5e5 paths or more.
-TEST_CASE("displacement distribution: few levels leave narrow clusters", "[real]") {
+TEST_CASE("displacement distribution: few levels leave narrow clusters", "[real][long]") {
   const auto of_levels = [](const std::vector<model::Level>& levels, const model::Scene& scene) {
     auto s = scene;
     s.noise.table = std::make_shared<const model::LevelTable>(levels);
