@@ -154,11 +154,16 @@ def split(options, random):
     rates[:count, n] *= share
     rates[count, :count] = rates[n, :count]
     rates[n, count], rates[count, n] = random.uniform(0.1, 2), random.uniform(0.1, 2)
-    return with_noise(options, noise.Chain(numpy.append(chain.x, chain.x[n]), rates)), without_levels
+    return with_noise(options, noise.Chain(numpy.append(chain.x, chain.x[n]), rates)), of_more_states
 
 
 def without_levels(key, value, answer):
     return None if key.startswith("entry_law") else (key, value)
+
+
+def of_more_states(key, value, answer):
+    """Where states are doubled, these have modes of their own."""
+    return None if key.startswith(("entry_law", "relaxation")) else (key, value)
 
 
 def as_states(options, random):
@@ -178,11 +183,11 @@ def zero_noise(options, random):
     rate = random.uniform(0.2, 3)
     chain = states(options)
     if isinstance(options["noise"], noise.Chain) or (chain is not None and random.random() < 0.5):
-        return with_noise(options, chain + noise.Chain([0, 0], [[0, rate], [rate, 0]])), without_levels
+        return with_noise(options, chain + noise.Chain([0, 0], [[0, rate], [rate, 0]])), of_more_states
     if "telegraph" in options["noise"]:
         return None
     return options | {"noise": f"{options['noise']}+telegraph", "telegraph_amplitude": 1e-30,
-                      "telegraph_rate": rate}, without_levels
+                      "telegraph_rate": rate}, of_more_states
 
 
 def looser(options, random):
