@@ -154,8 +154,8 @@ TEST_CASE("pulses: mean and variance are those of shot noise") {
     Given more;
     double mean, variance;
   } cases[] = {
-      {{{"pulse_duration", "0.25"}, {"pulse_sign", "up"}}, 1, 1},
-      {{{"pulse_duration", "0.25"}, {"pulse_sign", "down"}}, -1, 1},
+      {{{"pulse_duration", "0.5"}, {"pulse_sign", "up"}}, 1, 1},
+      {{{"pulse_duration", "0.5"}, {"pulse_sign", "down"}}, -1, 1},
       {{{"pulse_duration", "0.5"}}, 0, 1},
       {{{"pulse_decay", "0.5"}, {"pulse_sign", "up"}, {"pulse_steps", "1"}}, 1, 1},
       {{{"pulse_decay", "0.5"}, {"pulse_sign", "up"}, {"pulse_steps", "4"}}, 1, 0.5 * 1.25},
@@ -190,7 +190,8 @@ TEST_CASE("pulses: mean and variance are those of shot noise") {
 TEST_CASE("sums of noises: pulses downwards are the mirror image of those upwards") {
   const auto sum_with = [](const char* sign) {
     return scene_of(with(kPulses, {{"noise", "pulses+telegraph"},
-                                   {"pulse_duration", "0.25"},
+                                   {"pulse_rate", "0.853"},
+                                   {"pulse_duration", "0.279"},
                                    {"pulse_sign", sign},
                                    {"telegraph_amplitude", "0.5"},
                                    {"telegraph_rate", "1"}}));
@@ -251,7 +252,7 @@ TEST_CASE("sums of noises: states are pairs, moments add up, options go to their
   const auto three = scene_of(with(kPulses, {{"noise", "telegraph+pulses+periodic"},
                                              {"telegraph_amplitude", "0.3"},
                                              {"telegraph_rate", "2"},
-                                             {"pulse_duration", "0.25"},
+                                             {"pulse_duration", "0.5"},
                                              {"pulse_sign", "up"},
                                              {"periodic_amplitude", "1.2"},
                                              {"period", "4"}}));

@@ -193,7 +193,7 @@ def report(entry, rows, left_out, kinds):
             continue
         cases, missed = ({row[0] for row in part} for part in (own, [row for row in own if not row[3] <= 1]))
         worst = max(own, key=lambda row: row[3])
-        table.append((name, f"{len(cases)}", f"{len(own)}", f"{len(missed)}", f"{worst[3]:.3g}", worst[2][:60]))
+        table.append((name, f"{len(cases)}", f"{len(own)}", f"{len(missed)}", f"{worst[3]:.3g}", worst[2].split("\n")[0][:60]))
         pairs, pairs_missed = pairs + len(cases), pairs_missed + len(missed)
     entry.table("Pairs of cases, and identities; keys compared; pairs with a difference above what is allowed",
                 ("relation", "pairs", "keys", "misses", "worst", "where"), table)
