@@ -22,7 +22,9 @@ constexpr double kPi = std::numbers::pi;
 // Degrees of the polynomials on a panel: doubled, so that points serve again, before it is halved.
 constexpr int kLeastDegree = 4, kMostDegree = 16;
 
-constexpr double kResolved = 3;  // of phi, in units of the accuracy, which pi divides
+constexpr double kResolved = 3;       // of phi, in units of the accuracy, which pi divides
+constexpr double kUnresolved = 3;     // of errors that follow from what is left, where that is more
+constexpr double kShareBeyond = 0.5;  // of the evaluations, for k beyond the highest
 
 /// |x|^(n/2 - 1) on either side. Jumps of what is smooth on both sides are all that shows at large
 /// k.
@@ -104,8 +106,8 @@ FourierInversion::FourierInversion(const Transform& phi, double mass, double mea
     double degrees = 0;
     for (std::size_t n = first; n < panels_.size(); ++n) degrees += panels_[n].degree();
     if (limits.furthest > 0) closest_ = degrees / (high - low);
-    const bool resolved = std::max(left_, unforeseen_) <= kResolved * limits.accuracy,
-               affordable = 3 * evaluations_ - 2 * before < limits.evaluations;
+    const bool resolved = is_resolved(),
+               affordable = 3 * evaluations_ - 2 * before < kShareBeyond * limits.evaluations;
     const double next =
         std::min(2 * high, high < limits.highest ? limits.highest : limits.furthest);
     open = !falls && next > high &&
@@ -113,6 +115,10 @@ FourierInversion::FourierInversion(const Transform& phi, double mass, double mea
     low = high;
     high = next;
   }
+}
+
+bool FourierInversion::is_resolved() const {
+  return std::max(left_, unforeseen_) <= kResolved * accuracy_;
 }
 
 // Narrow parts of f leave much of phi, added with changing phases. What is left goes on falling as
@@ -326,7 +332,8 @@ FourierInversion::Value FourierInversion::between(double x, double Integrals::*w
     error += (std::min(further_, 2 * left_) + beyond(x)) / kPi;
     const Value proven = bounds(x);
     value = std::clamp(value, proven.value - proven.error, proven.value + proven.error);
-    error = std::min(error, std::abs(value - proven.value) + proven.error);
+    const double bound = std::abs(value - proven.value) + proven.error;
+    error = std::min(is_resolved() ? error : kUnresolved * error, bound);
   } else {
     if (left_ > accuracy_) error += further_ * panels_.back().high / kPi;
     error += std::max(-value, 0.0);

@@ -97,6 +97,10 @@ std::vector<Atom> atoms_at(const Computation& computation, double time) {
   return all;
 }
 
+// Few levels leave clusters far narrower than the deviation of all, which so many times larger
+// wavenumbers show.
+constexpr double kNarrower = 4;
+
 /// The distribution at one time: atoms, and a density that is singular where bodies rest: at 0, as
 /// many slips are short; from a state of sliding or where none rests, at the first atom. Where
 /// quantiles are asked for that far out, probabilities below kTail on either side of d are found by
@@ -275,9 +279,8 @@ void Distribution::invert(double time) {
   const double units = std::exp2(std::ceil(-std::log10(question.accuracy)));
   lowest_ = centre_ + mean_ - furthest * spread_;
   highest_ = centre_ + mean_ + furthest * spread_;
-  // Few levels leave clusters far narrower than the deviation of all.
   const double highest = units * 2 / spread_,
-               last = computation_.process().noise.table ? furthest * highest : 0;
+               last = computation_.process().noise.table ? kNarrower * highest : 0;
   inversion_.emplace(phi, mass_, mean_, spread_, even_,
                      Inversion::Limits{0.3 * question.accuracy, highest, 400, last});
 }
@@ -327,7 +330,8 @@ void resolve_distribution(Planner& planner) {
   const double force = process.noise.standard_deviation(),
                speed = std::min(process.terminal_speed(), force * std::min(last, tau)) / 2,
                spread = speed * std::sqrt(last * std::min(last, 2 * tau));
-  resolve_displacements(planner, 2 * std::exp2(-std::log10(question.accuracy)) / spread);
+  resolve_displacements(planner, (process.noise.table ? kNarrower : 1) * 2 *
+                                     std::exp2(-std::log10(question.accuracy)) / spread);
 }
 
 }  // namespace

@@ -159,11 +159,12 @@ class Basis {
 };
 
 // c exp(t A) 1 on the space of a resolvent at z from 1, which grows until that is the same as with
-// a few vectors less: A = z - 1/(its resolvent) there.
+// a few vectors less: A = z - 1/(its resolvent) there. `vectors` holds how many were enough at the
+// wavenumber before: with far fewer nothing is compared.
 template <class Resolvent>
-DisplacementModel::Transform exponential_of(MPI_Comm comm, const Vector& one, const Vector& c,
-                                            double z, double t, int most, double most_growth,
-                                            double enough, const Resolvent& resolvent) {
+DisplacementModel::Transform
+exponential_of(MPI_Comm comm, const Vector& one, const Vector& c, double z, double t, int most,
+               double most_growth, double enough, int& vectors, const Resolvent& resolvent) {
   Basis basis(comm, one.size());
   const Vector start{basis.add(one).back()};
   Matrix<Complex> h(most, most);
@@ -172,7 +173,7 @@ DisplacementModel::Transform exponential_of(MPI_Comm comm, const Vector& one, co
   Vector seen;
   // n vectors follow times up to about n/z. With fewer than for t, waves have died out in the space
   // that they span, and more vectors change nothing of that for a while.
-  const int least = std::min(most / 2, std::max(4, static_cast<int>(z * t / 2)));
+  const int least = std::min(most / 2, std::max({4, static_cast<int>(z * t / 2), vectors * 2 / 3}));
   for (int count = 1, next = least; count < most; ++count) {
     const Vector newest = basis.column(count - 1);
     Vector product{std::inner_product(c.begin(), c.end(), newest.begin(), Complex(0))};
@@ -193,6 +194,7 @@ DisplacementModel::Transform exponential_of(MPI_Comm comm, const Vector& one, co
     found.error = std::max(std::abs(found.value - last), std::abs(found.value - before));
     before = last;
     if (exhausted) found.error = 1e-14;
+    vectors = count;
     if (found.error < enough || exhausted) break;
   }
   return found;
@@ -324,8 +326,8 @@ DisplacementModel::Transform DisplacementModel::projected(double k, double z) {
     for (std::size_t m = 0; m < y.size(); ++m) y[m] = root_[m] * Complex(real[m], imaginary[m]);
     return y;
   };
-  auto found =
-      exponential_of(systems_.comm(), one_, c_, z, t_, most, most_growth, accuracy_, resolvent);
+  auto found = exponential_of(systems_.comm(), one_, c_, z, t_, most, most_growth, accuracy_,
+                              vectors_, resolvent);
   found.value *= std::polar(1.0, k * drift_ * t_);
   return found;
 }

@@ -65,6 +65,7 @@ class DisplacementModel {
   double drift_ = 0;  // a velocity that all have in common
   Tilt tilt_;
   double pole_;               // beyond the growth
+  int vectors_ = 0;           // of the space at the last wavenumber
   std::vector<double> root_;  // of the weight of the inner product, on this rank
   std::vector<std::complex<double>> one_, c_;
   double other_pole_ = 0, checked_ = -1;
