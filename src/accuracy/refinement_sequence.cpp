@@ -88,8 +88,14 @@ RefinementSequence::RefinementSequence(const cases::Case& given)
   branches_ = full_grid || both || !given.scene.symmetric() ? 2 : 1;
   // On nodes the residuals of eigenvectors, which stand for errors, stay about twice as large.
   const bool near_rounding = needs_.modes && accuracy_ < kModesOnNodes;
+  // Groups are wide at noises that are rare. Weights exp(s x(t)) move the noise by 2 s D, against
+  // its deviation (D/tau)^1/2.
+  constexpr double most_moved = 2;
+  const auto& noise = process.noise;
+  const double moved =
+      2 * needs_.rates.tilt * std::sqrt(noise.intensity() * noise.correlation_time());
   all_levels_ = full_grid || method_.noise_degree == 0 || near_rounding ||
-                !given.scene.meant().noise.neighbours_only();
+                (!method_.noise_degree && moved > most_moved) || !noise.neighbours_only();
   tail_counts_ =
       !given.question.observables.empty() || given.question.any(&catalogue::Entry::weighs_tail);
   last_ = method_.fixed() ? 1 : free_refinement_levels();

@@ -271,6 +271,7 @@ std::optional<double> approach(Powers& powers, double below, double step, double
       z = next;
       if (near && z == theta + away) return away;
     } else {
+      if (near && z - next < away) return {};  // it is not there that u turns negative
       below = next;
       powers.move(z);
     }
@@ -310,20 +311,20 @@ std::optional<TiltedGrowth> growth(operators::Systems& systems, double s, bool t
   const auto with_error = [](double now, double before, double more) {
     return Uncertain{now, std::abs(now - before) + more};
   };
-  return TiltedGrowth{with_error(powers.theta(), theta, cut * std::abs(s)),
+  return TiltedGrowth{s == 0 ? Uncertain{} : with_error(powers.theta(), theta, cut * std::abs(s)),
                       with_error(powers.velocity(), velocity, cut)};
 }
 
 // Theta is convex, 0 at s = 0, and its slopes are velocities of bodies. Where grossly another
-// eigenvalue was taken, there is no value.
-void leave_out_contradictions(std::map<double, TiltedGrowth>& known, double v_max) {
-  constexpr double share = 1e-2;
+// eigenvalue was taken, there is no value. `rate` is that at which the noise changes.
+void leave_out_contradictions(std::map<double, TiltedGrowth>& known, double v_max, double rate) {
+  constexpr double share = 1e-2, rounding = 1e-9;
   std::set<double> doubtful;
   const auto below_tangent = [&](double s, double theta, double at) {
     const auto& [there, slope] = known[at];
     const double rise = slope.value * (s - at);
     return theta - there.value - rise <
-           -share * (std::abs(theta) + std::abs(there.value) + std::abs(rise));
+           -share * (std::abs(theta) + std::abs(there.value) + std::abs(rise)) - rounding * rate;
   };
   for (const auto& [s, g] : known) {
     if (below_tangent(0, 0, s) || std::abs(g.velocity.value) > (1 + share) * v_max) {
@@ -352,7 +353,8 @@ void find_growth(Computation& computation) {
                         .value_or(TiltedGrowth{kNoValue, kNoValue});
     }
   }
-  leave_out_contradictions(known, computation.problem.discretisation.velocities->v_max());
+  leave_out_contradictions(known, computation.problem.discretisation.velocities->v_max(),
+                           1 / computation.process().noise.correlation_time());
   Result theta = array(catalogue::kTheta, tilts),
          velocity = array(catalogue::kTiltedVelocity, tilts),
          rate = array(catalogue::kRateFunction, tilts);
@@ -365,7 +367,7 @@ void find_growth(Computation& computation) {
   }
   for (auto* result : {&theta, &velocity, &rate}) {
     result->unreached = "is not resolved: no eigenvalue was found for certain to be the largest "
-                        "one; take a smaller |s|";
+                        "one; leave it out, or take -noise_degree 0 or a higher -degree";
     computation.results().push_back(std::move(*result));
   }
 }
