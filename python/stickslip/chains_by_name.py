@@ -21,7 +21,8 @@ def positive(**values: float) -> None:
 
 def ou(deviation: float, tau: float, delta: float, levels: int | None = None) -> Chain:
     """The Ornstein-Uhlenbeck chain of the program: forces i delta, |i| <= levels, rates (s^2/(tau delta^2)) (1 -+ i
-    delta^2/(2 s^2)) up and down, covariance s^2 exp(-t/tau).
+    delta^2/(2 s^2)) up and down, covariance s^2 exp(-t/tau) with all levels. Fewer are those of `-noise_levels`: the
+    outermost are left at the rate at which all others are, 2 s^2/(tau delta^2).
 
     Parameters
     ----------
@@ -44,7 +45,8 @@ def ou(deviation: float, tau: float, delta: float, levels: int | None = None) ->
                          f"take fewer levels, or a delta of at most {math.sqrt(2) * deviation:g}")
     tilt = delta**2 / (2 * deviation**2) * numpy.arange(-levels, levels + 1)
     scale = deviation**2 / (tau * delta**2)
-    rates = sparse.diags([scale * (1 - tilt[:-1]), scale * (1 + tilt[1:])], [1, -1])
+    down = scale * numpy.append(1 + tilt[1:-1], max(1 + tilt[-1], 2))  # above 2 where the last level is beyond `full`
+    rates = sparse.diags([down[::-1], down], [1, -1])
     return Chain(delta * numpy.arange(-levels, levels + 1), rates, "ou", Meant(
         lambda t: deviation**2 * numpy.exp(-t / tau), lambda w: 2 * deviation**2 * tau / (1 + (w * tau) ** 2)))
 

@@ -155,7 +155,7 @@ model::Parameters parameters_of(const model::Scene& s) {
   if (s.force) {
     add("force_file", s.force->file);
     if (s.force->scale != 1) add("force_scale", s.force->scale);
-    if (s.force->gravity > 0) add("gravity", s.force->gravity);
+    if (s.force->gravity > 0) add("force_gravity", s.force->gravity);
     if (s.force->constant) add("force_interpolation", std::string("constant"));
     if (s.force->rest > 0) add("force_rest", s.force->rest);
     if (s.force->step > 0) {

@@ -18,7 +18,7 @@ namespace stickslip::effects {
 namespace {
 
 constexpr const char *kForceFile = "force_file", *kScale = "force_scale",
-                     *kInterpolation = "force_interpolation", *kGravity = "gravity";
+                     *kInterpolation = "force_interpolation", *kGravity = "force_gravity";
 constexpr const char *kVertical = "vertical", *kUnit = "# unit: ", *kAcceleration = "m/s^2";
 constexpr double kStandardGravity = 9.80665;  // m/s^2, by the CGPM of 1901
 
@@ -119,8 +119,9 @@ void read_load(Given& given, const model::Scene& scene, model::ForceRecord& reco
                         "leave -friction out, or the column");
   }
   if (!given.has(kGravity) && record.unit.empty()) {
-    return given.refuse(kForceFile, "has a column vertical, and its unit is not known",
-                        "add -gravity in the unit of that column, such as -gravity 9.81");
+    return given.refuse(
+        kForceFile, "has a column vertical, and its unit is not known",
+        "add -force_gravity in the unit of that column, such as -force_gravity 9.81");
   }
   const double gravity = given.has(kGravity) ? given.real(kGravity) : kStandardGravity;
   record.gravity = gravity;
@@ -130,7 +131,7 @@ void read_load(Given& given, const model::Scene& scene, model::ForceRecord& reco
     if (record.load[n] >= 0) continue;
     return given.refuse(kForceFile,
                         fmt::format("lifts the body off the ground at time {:g}, where the "
-                                    "vertical acceleration {:g} is below -gravity = {:g}",
+                                    "vertical acceleration {:g} is below -force_gravity = {:g}",
                                     record.time[n], vertical, gravity),
                         "take a -force_scale closer to 0, or leave the column vertical out");
   }
@@ -163,11 +164,12 @@ std::vector<Option> force_options() {
           "take for example -9.81 for a ground acceleration in g, which pushes a body "
           "the other way",
           {.symbol = {}, .label = "scale of the force", .others = {"scale_factor", "pga"}}),
-      Option::real(kGravity, "", "", Range::positive(),
-                   "acceleration of gravity, where -force_file has a column vertical: the "
-                   "vertical acceleration a of the ground multiplies friction by 1 + a/gravity, "
-                   "with a times |-force_scale|; 9.80665 for files in m/s^2",
-                   "in the unit of that column, after scaling")};
+      Option::real(
+          kGravity, "", "", Range::positive(),
+          "acceleration of gravity, where -force_file has a column vertical: the "
+          "vertical acceleration a of the ground multiplies friction by 1 + a/force_gravity, "
+          "with a times |-force_scale|; 9.80665 for files in m/s^2",
+          "in the unit of that column, after scaling")};
 }
 
 void read_force(Given& given, model::Scene& scene) {

@@ -43,7 +43,7 @@ std::string scene_text(const model::Scene& s) {
     parts.push_back(fmt::format("force of {}, at most {:.5g}{} at time {:g}{}", s.force->file,
                                 std::abs(s.force->force[n]), unit_behind(s.force->unit),
                                 s.force->time[n], s.force->unit.empty() ? "" : " s"));
-    if (s.force->gravity > 0) add("gravity", s.force->gravity);
+    if (s.force->gravity > 0) add("force_gravity", s.force->gravity);
   }
   return spaced(parts);
 }

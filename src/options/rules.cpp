@@ -64,11 +64,12 @@ class Rules {
     for (const char* option :
          {"observable", "start", "horizon", "transient_solver", "spectrum_solver", "passage",
           "force_file", "force_interpolation", "force_scale", "force_rest", "sample_layout",
-          "sample_step", "gravity"}) {
+          "sample_step", "force_gravity"}) {
       warn({option}, !asked(option));
     }
     const bool lifts = r_.scene.force && !r_.scene.force->load.empty();
-    warn({"gravity"}, asked("gravity") && !lifts, "without a column vertical in -force_file");
+    warn({"force_gravity"}, asked("force_gravity") && !lifts,
+         "without a column vertical in -force_file");
     for (const auto* argument : catalogue::arguments()) {
       const std::string option(argument->option);
       const bool of_method = method_.small_lambda && option == "lambda";

@@ -272,7 +272,7 @@ class Texts(Case):
 class Summary(Case):
     def test_layout(self):
         s = self.summary(*SMALL, "-quantities", "sticking,moments,noise_law,entry_law")
-        self.assertEqual(list(s), ["scene", "results", "accuracy", "cost", "plan", "provenance"])
+        self.assertEqual(list(s), ["scene", "results", "accuracy", "cost", "plan", "provenance", "warnings"])
         for key in ("P_stick", "P_slide", "mean_stick", "mean_slide", "mean_excursion", "E_V2",
                     "E_absV", "E_XV", "E_V", "P_X_le_mu_s", "E_X2", "f_stick_0"):
             self.assertIn("value", s["results"][key])

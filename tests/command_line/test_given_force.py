@@ -142,19 +142,19 @@ class GivenForce(Case):
             (self.folder / "v.csv").write_text("time,force,vertical\n" + rows)
             options = (*ASKED, "v.csv", "-mu_s", "2", "-mu_d", "2", "-drag", "none", "-start", "0,10", *more)
             return self.summary(*options, folder=self.folder)["results"]["final_displacement"]["value"]
-        self.assert_close(final("0,0,5\n20,0,5\n", "-gravity", "10"), 100 / (2 * 3), 1e-14)
-        self.assert_close(final("0,0,-5\n20,0,-5\n", "-gravity", "10"), 100 / (2 * 1), 1e-14)
-        self.assert_close(final("0,0,5\n20,0,5\n", "-gravity", "10", "-force_scale", "-2"), 100 / (2 * 4), 1e-14)
-        self.assert_close(final("0,0,5\n20,0,5\n", "-gravity", "10", "-force_interpolation", "constant"), 100 / 6, 1e-14)
+        self.assert_close(final("0,0,5\n20,0,5\n", "-force_gravity", "10"), 100 / (2 * 3), 1e-14)
+        self.assert_close(final("0,0,-5\n20,0,-5\n", "-force_gravity", "10"), 100 / (2 * 1), 1e-14)
+        self.assert_close(final("0,0,5\n20,0,5\n", "-force_gravity", "10", "-force_scale", "-2"), 100 / (2 * 4), 1e-14)
+        self.assert_close(final("0,0,5\n20,0,5\n", "-force_gravity", "10", "-force_interpolation", "constant"), 100 / 6, 1e-14)
         vertical = (*ASKED, "v.csv", "-mu_s", "2")
-        self.refuse(*vertical, message=("its unit is not known", "add -gravity"))
-        self.refuse(*vertical, "-gravity", "4", "-force_scale", "-1", "-friction", "stribeck", "-stribeck_velocity", "1",
+        self.refuse(*vertical, message=("its unit is not known", "add -force_gravity"))
+        self.refuse(*vertical, "-force_gravity", "4", "-force_scale", "-1", "-friction", "stribeck", "-stribeck_velocity", "1",
                     message=("-friction = stribeck: does not go with a column vertical",))
         (self.folder / "v.csv").write_text("time,force,vertical\n0,0,0\n1,0,-5\n2,0,0\n")
-        self.refuse(*vertical, "-gravity", "4", message=("lifts the body off the ground at time 1", "-gravity = 4"))
-        self.run_ok(*vertical, "-gravity", "4", "-force_scale", "0.5")
-        done = self.run_ok(*ASKED, RECORD, "-gravity", "9.81")
-        self.assertIn("-gravity = 9.81 has no effect without a column vertical", done.stderr)
+        self.refuse(*vertical, "-force_gravity", "4", message=("lifts the body off the ground at time 1", "-force_gravity = 4"))
+        self.run_ok(*vertical, "-force_gravity", "4", "-force_scale", "0.5")
+        done = self.run_ok(*ASKED, RECORD, "-force_gravity", "9.81")
+        self.assertIn("-force_gravity = 9.81 has no effect without a column vertical", done.stderr)
 
     def test_files(self):
         text = self.run_ok(*ASKED, RECORD, "-drag", "none", "-mu_d", "1", "-summary", "s.json", "-output", "h.h5",

@@ -3,7 +3,7 @@
 import json
 import unittest
 
-from running import Case
+from running import Case, SOURCES
 
 SMALL = ("-mu_d", "0.25", "-delta", "0.5")
 
@@ -15,6 +15,14 @@ class Plans(Case):
         self.assertNotIn("P_stick", done.stdout)
         self.assertIn("1 transposed", done.stdout)
         self.assertEqual(list(self.folder.iterdir()), [])
+
+    def test_shipped_scenes_warn_of_nothing(self):
+        for file in sorted((SOURCES / "options").rglob("*.opts")):
+            if "\n-sweep_" in file.read_text():
+                continue  # which has no plan; test_scenes runs it
+            path = ("-trajectory", self.folder / "path.csv") if file.stem == "trajectory" else ()
+            with self.subTest(scene=file.name):
+                self.assertEqual(self.run_ok("-options_file", file, "-plan", *path, folder=SOURCES).stderr, "")
 
     def test_what_does_not_fit(self):
         """The table shows it, as far as it is known; then the message of the run."""

@@ -15,7 +15,9 @@ class Scenes(Case):
                 more = path if file.stem == "trajectory" else ()
                 # Names of files within scenes count from the folder of the sources.
                 s = self.summary("-options_file", file, *more, folder=SOURCES)
+                self.assertEqual(s["warnings"], [])
                 for run in s.get("runs", [s]):
+                    self.assertEqual(run["warnings"], [])
                     self.assertTrue(run["accuracy"]["reached"])
                     self.check_power(run["scene"], run["results"])
 

@@ -131,6 +131,15 @@ class Runs(unittest.TestCase):
             numpy.testing.assert_allclose(chain.spectrum(omega), r["S_x"].value, rtol=1e-10)
             self.assertAlmostEqual(chain.deviation**2, r["E_X2"].value, delta=1e-12)
 
+    def test_fewer_levels_are_those_of_the_program(self):
+        asked = {"quantities": "sticking,moments,noise_law,noise_spectrum", "omega": [0, 1], "mu_d": 0.6, "accuracy": 1e-11}
+        for deviation, levels in ((1, 3), (1, 6), (1, 8), (0.7, 3)):  # 8 and 3 are all
+            options = {"noise_deviation": deviation, "delta": 0.5, "noise_levels": levels}
+            of_program, own = (stickslip.run(**asked, **noises) for noises in (
+                options, {"noise": noise.ou(deviation, 1, 0.5, levels)}))
+            for key in ("P_stick", "mean_slide", "E_V2", "E_XV", "P_X_le_mu_s", "E_X2", "S_x"):
+                numpy.testing.assert_allclose(own[key].value, of_program[key].value, rtol=1e-10, err_msg=f"{options} {key}")
+
     def test_files(self):
         chain = noise.ou(1, 1, 0.5)
         with tempfile.TemporaryDirectory() as folder:
@@ -296,7 +305,7 @@ class OfRecords(unittest.TestCase):
         self.assertGreaterEqual(served, 2)
 
     def test_a_band_of_no_frequency(self):
-        """Correlated noise less a little of its slow part swings slowly by 0.06, for which no frequency can be told."""
+        """Correlated noise less a little of its slow part swings slowly by 0.06, of which no frequency can be found."""
         decay, z = numpy.exp(-0.2), numpy.random.default_rng(5).standard_normal(20000)
         fast = scipy.signal.lfilter([1], [1, -decay], z)
         record = Record(0.01 * numpy.arange(20000), fast - 0.5 * scipy.signal.lfilter([0.01], [1, -0.99], fast))

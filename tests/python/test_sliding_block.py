@@ -36,7 +36,7 @@ class Newmark(Case):
         half = stickslip.newmark(record, "0.1g", force_interpolation="constant")
         other = stickslip.newmark(stickslip.Record(time, value, "g"), "0.05g", force_interpolation="constant")
         self.assertAlmostEqual(half["final_displacement"].value, other["final_displacement"].value, delta=1e-12)
-        with self.assertRaisesRegex(stickslip.BadInput, "lifts the body off the ground at time 0, .*-gravity = 9.80665"):
+        with self.assertRaisesRegex(stickslip.BadInput, "lifts the body off the ground at time 0, .*-force_gravity = 9.80665"):
             stickslip.newmark(record.scaled(3), "0.1g")
         self.assertRaisesRegex(ValueError, "vertical: shape", stickslip.Record, time, value, vertical=[1])
 

@@ -87,7 +87,7 @@ inline constexpr Entry kGivenForce{
     .title = "motion under the force of -force_file",
     .routes = {Route::excursion},
     .options = "force_file, force_interpolation, force_scale, force_rest, sample_layout, "
-               "sample_step, gravity, start",
+               "sample_step, force_gravity, start",
     .rows = kGivenForceRows,
     .without_system = true,
     .without_limit = true};

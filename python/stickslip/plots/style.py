@@ -127,17 +127,24 @@ def decades(axis: "Axis") -> None:
     axis.set_minor_locator(matplotlib.ticker.NullLocator())
 
 
-def number(results: Results, option: str) -> float:
-    """An option that is one."""
-    return float(results.options[option])
-
-
 def known() -> Mapping[str, Mapping[str, Any]]:
     """What the program declares of its options; nothing where there is none to ask."""
     try:
         return declared()
     except ProgramError:
         return {}
+
+
+def given(results: Results, option: str) -> str:
+    """An option as the program had it. Empty where it had no effect; where the file does not say, the default of a choice
+    between words, and empty of anything else."""
+    declared_as = known().get(option)
+    return results.options.get(option, declared_as["default"] if declared_as and declared_as["meanings"] else "")
+
+
+def number(results: Results, option: str) -> float:
+    """An option that is one; 0 where it had no effect."""
+    return float(given(results, option) or 0)
 
 
 def symbol(option: str) -> str:
@@ -158,7 +165,7 @@ def parameters(results: Results) -> dict[str, str]:
     options, declarations, found = results.options, known(), {}
     for name in dict.fromkeys((*declarations, *options)):
         option = declarations.get(name)
-        text = options.get(name, option["default"] if option and option["meanings"] else "")
+        text = given(results, name)
         if not text or option is None and f"sweep_{name}" not in options:
             continue
         in_use = option is None or option["group"] == "Model" and (not option["belongs_to"] or users(results, name))
@@ -173,7 +180,7 @@ def users(results: Results, option: str) -> set[str]:
     declarations = known()
     owners = declarations[option]["belongs_to"] if option in declarations else {}
     return {choice for choice, words in owners.items()
-            if results.options.get(choice, declarations[choice]["default"]) in words}
+            if given(results, choice) in words}
 
 
 def stated(option: str, text: str, form: Callable[[float], str] = "{:g}".format) -> str:
@@ -209,7 +216,7 @@ def noise(results: Results) -> str:
 
 def drag(results: Results) -> str:
     """b(v): what the program says of the drag law, with numbers for their symbols; TeX."""
-    law = results.options["drag"]
+    law = given(results, "drag")
     text = known().get("drag", {}).get("meanings", {}).get(law, law)
     for name, option in known().items():
         value = results.options.get(name)
@@ -226,7 +233,7 @@ def drag(results: Results) -> str:
 def without(results: Results, names: Collection[str]) -> Results:
     """The same results, as if the options of these names had no effect, for a title that leaves them out."""
     other = copy.copy(results)
-    other.options = {**results.options, **dict.fromkeys(names, "")}
+    other.options = {**results.options, **dict.fromkeys(names, "")} if results.options else {}
     return other
 
 
