@@ -12,7 +12,9 @@ namespace stickslip::quantities {
 
 std::string reason_to_go_on(MPI_Comm comm) {
   const Failure failure = petsc::failure_in_flight();
-  if (petsc::ranks(comm) > 1 || failure.status() == ExitStatus::no_memory) throw;
+  const bool ends_all =
+      failure.status() == ExitStatus::no_memory || failure.status() == ExitStatus::bad_input;
+  if (petsc::ranks(comm) > 1 || ends_all) throw;
   return failure.what();
 }
 
