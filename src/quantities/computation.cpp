@@ -12,9 +12,9 @@ namespace stickslip::quantities {
 
 std::string reason_to_go_on(MPI_Comm comm) {
   const Failure failure = petsc::failure_in_flight();
-  const bool of_all =
+  const bool ends_all =
       failure.status() == ExitStatus::no_memory || failure.status() == ExitStatus::bad_input;
-  if (petsc::ranks(comm) > 1 || of_all) throw;
+  if (petsc::ranks(comm) > 1 || ends_all) throw;
   return failure.what();
 }
 

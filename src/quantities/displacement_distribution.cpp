@@ -5,10 +5,12 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
+#include <numeric>
 #include <optional>
 
 #include "stickslip/catalogue/displacement_distribution_keys.hpp"
 #include "stickslip/exact/fourier_inversion.hpp"
+#include "stickslip/model/same_force.hpp"
 #include "stickslip/quantities/displacement_tail.hpp"
 #include "stickslip/quantities/durations.hpp"
 #include "stickslip/quantities/plan.hpp"
@@ -38,8 +40,8 @@ Uncertain still_at_rest(const model::Process& process, const std::vector<double>
   return {std::max(all - left.value, 0.0), left.error + 1e-15};
 }
 
-// Of a body on one level, which moves as long as the noise does not jump, and may come to rest.
-Atom without_jumps(const model::Process& process, const Start& start, double time) {
+// Of a body on one level, which moves as long as the force stays the same, and may come to rest.
+Atom under_one_force(const model::Process& process, const Start& start, double time) {
   const int level = start.level, lowest = process.lowest_static();
   const bool holds = process.sticks(level);
   const auto mirrored = process.mirrored();
@@ -57,14 +59,16 @@ Atom without_jumps(const model::Process& process, const Start& start, double tim
     slides = !piece.stopped || !holds;
     if (piece.stopped) upwards = !upwards;
   }
-  const double unmoved = std::exp(-process.noise.rate(level) * std::min(now, time));
-  Uncertain rests{1, 0};
+  const double slid = std::min(now, time);
+  const auto [first, on_levels] = model::unchanged(process.noise, level, slid);
   if (holds && now < time) {
     std::vector<double> begins(static_cast<std::size_t>(process.highest_static() - lowest) + 1);
-    begins[static_cast<std::size_t>(level - lowest)] = 1;
-    rests = still_at_rest(process, begins, time - now);
+    std::ranges::copy(on_levels, begins.begin() + (first - lowest));
+    atom.probability = still_at_rest(process, begins, time - now);
+  } else {
+    const double kept = std::reduce(on_levels.begin(), on_levels.end());
+    atom.probability = {kept, 1e-16 * (8 + process.noise.rate(level) * slid) * kept};
   }
-  atom.probability = unmoved * rests;
   return atom;
 }
 
@@ -73,7 +77,7 @@ std::vector<Atom> atoms_at(const Computation& computation, double time) {
   const auto& process = computation.process();
   const auto& start = computation.question().start;
   if (time == 0) return {{0, {1, 0}}};
-  if (start.kind == Start::Kind::state) return {without_jumps(process, start, time)};
+  if (start.kind == Start::Kind::state) return {under_one_force(process, start, time)};
   std::vector<double> rests;
   if (start.kind == Start::Kind::stationary) {
     const auto& excursion = computation.distribution().excursion();
@@ -88,8 +92,8 @@ std::vector<Atom> atoms_at(const Computation& computation, double time) {
     const double p = levels[static_cast<std::size_t>(i - process.noise.lowest())];
     if (process.sticks(i)) {
       rests.push_back(p);
-    } else if (p * std::exp(-process.noise.rate(i) * time) > rounding) {
-      all.push_back(without_jumps(process, {i, 0}, time));
+    } else if (p * std::exp(-model::change_rates(process.noise, i).least * time) > rounding) {
+      all.push_back(under_one_force(process, {i, 0}, time));
       all.back().probability = p * all.back().probability;
     }
   }

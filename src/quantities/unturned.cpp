@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "stickslip/algebra/dense.hpp"
+#include "stickslip/model/same_force.hpp"
 #include "stickslip/simulation/flow.hpp"
 #include "stickslip/simulation/rise_time.hpp"
 
@@ -37,8 +38,8 @@ double arrival(const model::Process& process, const operators::SystemKey& key, i
   return kInfinity;
 }
 
-/// Transport by one level on elements, without a way back after jumps: u' = M u, where the last
-/// state is that of having passed, and u -> start u.
+/// Transport by one force on elements, without a way back once it has changed, at a rate: u' = M u,
+/// where the last state is that of having passed, and u -> start u.
 struct Transport {
   algebra::Matrix<double> m;
   std::vector<double> start;
@@ -46,7 +47,8 @@ struct Transport {
 
 // Without elements beyond the speed, which nobody reaches who starts below, and without the other
 // branch, unless the body may turn round.
-Transport transport(const operators::Discretisation& killed, int level, double v, double w) {
+Transport transport(const operators::Discretisation& killed, int level, double v, double w,
+                    double rate) {
   const auto& process = killed.process;
   const auto& axis = *killed.velocities;
   const auto nodes = axis.nodes();
@@ -70,7 +72,7 @@ Transport transport(const operators::Discretisation& killed, int level, double v
       velocity::TransportRow row;
       along.transport(force, j, row);
       const int at = branch * size + j;
-      double leaving = process.noise.rate(level) + row.inflow + row.outflow + row.killed;
+      double leaving = rate + row.inflow + row.outflow + row.killed;
       for (const auto& e : row.entries) {
         if (e.node < size) t.m(at, branch * size + e.node) += e.value;
         leaving += e.value;
@@ -114,11 +116,11 @@ std::vector<Unturned> before_first_jump(const operators::Discretisation& killed,
                  v = state ? start.v : 0;
     if (p < least) continue;
     constexpr double most = 40;  // jumps that do not happen
-    const double rate = process.noise.rate(i),
+    const double rate = model::change_rates(process.noise, i).most,
                  arrives = arrival(process, key, i, v, std::min(longest, most / rate)),
                  jump = p * std::exp(-rate * arrives);
     if (jump < least) continue;
-    const Transport moved = transport(killed, i, v, key.speed_limit);
+    const Transport moved = transport(killed, i, v, key.speed_limit, rate);
     for (std::size_t n = 0; n < time.size(); ++n) {
       const auto states = moved.start * algebra::exponential(moved.m, time[n]);
       all[n].exact += time[n] >= arrives ? jump : 0;

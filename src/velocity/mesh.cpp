@@ -12,6 +12,7 @@
 #include "log_density.hpp"
 #include "waves.hpp"
 
+#include "stickslip/model/same_force.hpp"
 #include "stickslip/support/infinity.hpp"
 
 namespace stickslip::velocity {
@@ -156,7 +157,7 @@ Layers partings(const model::Process& process, const MeshRule& rule, bool on_bot
       const double v =
           boost::math::tools::toms748_solve(speed, low, high, rounding, iterations).first;
       const double near = 1e-6 * v, slope = (drag(v + near) - drag(v - near)) / (2 * near);
-      const double power = slope > 0 ? noise.rate(i) / slope : kSmooth;
+      const double power = slope > 0 ? model::change_rates(noise, i).most / slope : kSmooth;
       if (v < rule.v_max && power < kSmooth) found[v] = layers_towards(power, rule);
     }
   }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "stickslip/model/same_force.hpp"
 #include "stickslip/support/infinity.hpp"
 #include "stickslip/velocity/mesh.hpp"
 
@@ -37,12 +38,13 @@ double wave_width_of_table(const model::Process& process, double omega, double v
     for (int n = 0; n < steps; ++n) drag[n] = side.drag((n + 0.5) / steps * v);
     const double at_end = side.drag(v);
     for (int i = noise.lowest(); i <= noise.highest(); ++i) {
-      if (omega <= noise.rate(i)) continue;
+      const double rate = model::change_rates(noise, i).most;
+      if (omega <= rate) continue;
       const double force = side.net_force(i);
       double jumps = 0;
       for (int n = 0; n < steps && jumps < lives; ++n) {
         const double speed = force + drag[n];
-        jumps += speed * force > 0 ? noise.rate(i) * v / steps / std::abs(speed) : lives;
+        jumps += speed * force > 0 ? rate * v / steps / std::abs(speed) : lives;
       }
       if (jumps < lives) slowest = std::min(slowest, std::abs(force + at_end));
     }
@@ -80,7 +82,7 @@ bool has_waves(const model::Process& process, double omega) {
   const auto& noise = process.noise;
   double slowest = 4 * noise.rate();
   for (int i = noise.lowest(); noise.table && i <= noise.highest(); ++i) {
-    slowest = std::min(slowest, noise.rate(i));
+    slowest = std::min(slowest, model::change_rates(noise, i).most);
   }
   return omega > slowest;
 }

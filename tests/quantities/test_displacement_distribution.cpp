@@ -86,6 +86,31 @@ TEST_CASE("displacement distribution: the atom in closed form", "[real]") {
   CHECK(values_from({1}, 0.1, {lower, 0}).at("displacement_quantile").value[0] == 0);
 }
 
+// Forces -1.5, 0.2 and 1.6, each of one state or of two; the highest is left at the rate 1.
+TEST_CASE("displacement distribution: noise that is always 0 leaves the atom as it is", "[real]") {
+  const std::vector<double> x{-1.5, 0.2, 1.6};
+  const std::vector<model::Transition> jumps{{0, 1, 1}, {1, 0, 0.5}, {1, 2, 0.7}, {2, 1, 1}};
+  std::vector<double> doubled;
+  std::vector<model::Transition> both{jumps};
+  for (std::size_t n = 0; n < 3; ++n) both.push_back({n, n + 3, 0.5});
+  for (std::size_t n = 0; n < 3; ++n) both.push_back({n + 3, n, 0.5});
+  for (const auto& [from, to, rate] : jumps) both.push_back({from + 3, to + 3, rate});
+  for (int copy = 0; copy < 2; ++copy) doubled.insert(doubled.end(), x.begin(), x.end());
+  for (const auto& table : {model::LevelTable(x, jumps), model::LevelTable(doubled, both)}) {
+    auto s = test::pushed_by_telegraph();
+    s.friction = {1, 0.5};
+    s.noise.table = std::make_shared<const model::LevelTable>(table);
+    const int highest = table.highest();
+    for (const auto& start : {model::Start{highest, 0}, model::Start{highest, 0.4}}) {
+      auto c = asking(s, {1}, 1, 0.05, start);
+      c.method.degree = 3;
+      const auto atom = values_at_the_time(c).at("displacement_atom");
+      CHECK(atom.value[0] == Approx(std::exp(-1)).epsilon(1e-12));
+      CHECK(atom.error[0] < 1e-12);
+    }
+  }
+}
+
 // Whatever the density is, a probability that lies within an atom has its place for a quantile.
 // Only one body in 13 meets a jump by that time, and what no jumps leave is less than that.
 TEST_CASE("displacement distribution: quantiles at atoms, though the density is not resolved",

@@ -44,8 +44,7 @@ struct Evaluation {
 };
 
 /// What the exception in flight says. Throws it again where others must not go on: without memory,
-/// with bad options of a solver, and on several ranks, of which one may fail alone. Called in a
-/// catch block.
+/// for bad input, and on several ranks, of which one may fail alone. Called in a catch block.
 [[nodiscard]] std::string reason_to_go_on(MPI_Comm comm);
 
 /// Does the work for a quantity, unless that has failed. What fails there leaves all others alone,

@@ -1,5 +1,5 @@
 #pragma once
-/// Bodies that reach a speed before the noise first jumps: all at one time.
+/// Bodies that reach a speed before the force first changes: all at one time.
 
 #include <vector>
 
@@ -16,11 +16,12 @@ struct Unturned {
 };
 
 /// By time > 0, from a start that is not stationary. On level i with the probability p_i such a
-/// body arrives after t_i, and with the probability p_i exp(-rate_i t_i); on the elements it is
-/// transported by the matrix of its level alone, without the other levels. What has less than
-/// `least` of the probability is left out. Zero on grids, which are chains of their own. `killed`
-/// kills at the speed of `key`. Local. O(size^3) for each level, size that of the elements below
-/// the speed.
+/// body arrives after t_i, and with the probability p_i exp(-rate_i t_i), rate_i the largest one at
+/// which levels of its force are left for others, as if all were left at that rate: of those left
+/// more slowly a part. On the elements it is transported by the matrix of its force alone. What has
+/// less than `least` of the probability is left out. Zero on grids, which are chains of their own.
+/// `killed` kills at the speed of `key`. Local. O(size^3) for each level, size that of the elements
+/// below the speed.
 [[nodiscard]] std::vector<Unturned>
 before_first_jump(const operators::Discretisation& killed, const operators::SystemKey& key,
                   const model::Start& start, const std::vector<double>& time, double least);

@@ -15,10 +15,11 @@ namespace stickslip::studies {
 struct Run {
   std::string method;                                      ///< hp, upwind, monte_carlo
   std::vector<std::pair<std::string, double>> parameters;  ///< what sets it apart, by option
-  quantities::Results results;                             ///< scalars
+  quantities::Results results = {};                        ///< scalars
   double seconds = 0;                                      ///< median of the repeated runs
-  petsc::SolverStatistics statistics;  ///< of the run that took this long; empty for a simulation
-  std::string failure = {};            ///< why some of its results have no values
+  petsc::SolverStatistics statistics =
+      {};                    ///< of the run that took this long, none of a simulation
+  std::string failure = {};  ///< why some of its results have no values
 };
 
 /// How many digits of a column are printed; files hold all.
