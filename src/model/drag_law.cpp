@@ -153,12 +153,7 @@ Expression read(const std::string& text, const Friction& friction, double tau) {
 Drag parse_drag(const std::string& text, const Friction& friction, double tau, double force,
                 double bias, double intensity) {
   const Expression b = read(text, friction, tau);
-  Drag drag{0, 0,
-            [b, at = std::vector<double>(1)](double v) mutable {
-              at[0] = v;
-              return b(at);
-            },
-            0, b.odd()};
+  Drag drag{0, 0, [b](double v) { return b({v}); }, 0, b.odd()};
   const Friction backwards = friction.mirrored();
   const double mu_d = std::min(friction.mu_d, backwards.mu_d);
   const Friction least{std::min(friction.mu_s, backwards.mu_s), mu_d, {}, {}, friction.stribeck};

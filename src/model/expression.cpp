@@ -112,11 +112,10 @@ Jet value_of(const Node& node, const std::vector<Jet>& of_nodes,
   return Jet(value_of<double>({node.operation, 0, 1, 2}, numbers, {}));
 }
 
-// In storage that a thread uses again and again.
 template <class T>
 T evaluated(const std::vector<Node>& nodes, const std::vector<T>& variables) {
-  thread_local std::vector<T> values;
-  values.clear();
+  std::vector<T> values;
+  values.reserve(nodes.size());
   for (const Node& node : nodes) values.push_back(value_of(node, values, variables));
   return values.back();
 }
