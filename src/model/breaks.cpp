@@ -54,8 +54,6 @@ class Search {
       const double slow = (jet.rough ? kSlowest : kSlow) * reach_;
       if (cell.high <= slow || is_known(jet, cell)) {
         add_places(cell);
-      } else if (jet.rough && is_among_many(cell) && hides_nothing(jet, cell)) {
-        continue;
       } else if (jet.rough && cell.high - cell.low < kLeast * cell.high) {
         add_break(place(cell));
       } else {
@@ -89,25 +87,6 @@ class Search {
     if (std::isfinite(size)) largest_ = std::max(largest_, size);
     const double exactly = exact * std::max(size, beside_largest * largest_);
     return std::min(error, jet.at[0].high - jet.at[0].low) <= exactly;
-  }
-
-  // Whether rough cells of one width stand before it. A break that is crossed leaves one or two.
-  [[nodiscard]] bool is_among_many(const Cell& cell) {
-    constexpr int many = 8;
-    neighbours_ = cell.low == rough_until_ ? neighbours_ + 1 : 0;
-    rough_until_ = cell.high;
-    return neighbours_ >= many;
-  }
-
-  // Formulas that touch a break, as abs(v^2 - 2*v + 1) does, stay rough on ever more cells around
-  // it. They are known where all that a cell can hold is too small and short to matter, and values
-  // there are those of a polynomial.
-  [[nodiscard]] bool hides_nothing(const Jet& jet, const Cell& cell) {
-    constexpr double exact = 1e-14, part = 1e-10;
-    const double width = cell.high - cell.low;
-    if (!((jet.at[0].high - jet.at[0].low) * width <= part * largest_ * cell.high)) return false;
-    const FunctionOfSpeed f = [this](double speed) { return at(speed); };
-    return interpolation_error(f, cell.low, cell.high) <= exact * largest_;
   }
 
   void add_places(const Cell& cell) {
@@ -176,8 +155,6 @@ class Search {
   std::size_t v_;
   double sign_, reach_;
   double largest_ = std::numeric_limits<double>::min() * 1e10;  // value that was seen
-  double rough_until_ = 0;
-  int neighbours_ = 0;  // rough cells in one row before the next
   Shape shape_;
 };
 
