@@ -104,11 +104,10 @@ TEST_CASE("large deviations: what is not resolved is named, and takes nothing al
   c.method.noise_degree = 3;
   auto outcome = accuracy::carry_out(PETSC_COMM_WORLD, c, {});
   CHECK(!outcome.reached);
-  CHECK_THAT(outcome.shortfall,
-             Catch::Contains("theta at tilt = 1.5 is not") && Catch::Contains("-noise_degree 0"));
   for (const auto& result : outcome.results) {
     INFO(result.key);
     const bool tilted = result.value.size() == 3;
+    if (tilted) CHECK_THAT(result.unreached, Catch::Contains("-noise_degree 0"));
     CHECK(std::isfinite(result.value[tilted ? 1 : 0]));
     CHECK((!tilted || (std::isnan(result.value[0]) && std::isnan(result.value[2]))));
   }
