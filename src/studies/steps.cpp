@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <functional>
-#include <ranges>
 #include <span>
 
 #include "stickslip/effects/effect.hpp"
@@ -136,9 +135,11 @@ std::string conclusion(Table table) {
 
 // Of the run with most values: some may have failed.
 std::vector<std::string> keys_of(const std::vector<Run>& runs) {
-  const auto most = std::ranges::max_element(std::views::reverse(runs), {}, [](const Run& run) {
+  const auto values = [](const Run& run) {
     return std::ranges::count_if(run.results, quantities::all_numbers);
-  });
+  };
+  const auto fewer = [&](const Run& a, const Run& b) { return values(a) < values(b); };
+  const auto most = std::max_element(runs.rbegin(), runs.rend(), fewer);
   std::vector<std::string> keys;
   for (const auto& result : most->results) keys.push_back(result.key);
   return keys;
