@@ -52,7 +52,7 @@ TEST_CASE("displacement distribution: known for telegraph noise", "[real]") {
 
 // Bodies on the lower level rest until the noise jumps; on the upper one they move at once, with
 // the velocity 1.8 (1 - exp(-t/2)).
-TEST_CASE("displacement distribution: the atom in closed form", "[real]") {
+TEST_CASE("displacement distribution: the atom in closed form", "[real][long]") {
   constexpr double time = 1.5;
   const double left = std::exp(-0.8 * time);
   const auto values_from = [](const std::vector<double>& distance, double t,
@@ -87,7 +87,8 @@ TEST_CASE("displacement distribution: the atom in closed form", "[real]") {
 }
 
 // Forces -1.5, 0.2 and 1.6, each of one state or of two; the highest is left at the rate 1.
-TEST_CASE("displacement distribution: noise that is always 0 leaves the atom as it is", "[real]") {
+TEST_CASE("displacement distribution: noise that is always 0 leaves the atom as it is",
+          "[real][long]") {
   const std::vector<double> x{-1.5, 0.2, 1.6};
   const std::vector<model::Transition> jumps{{0, 1, 1}, {1, 0, 0.5}, {1, 2, 0.7}, {2, 1, 1}};
   std::vector<double> doubled;
@@ -114,7 +115,7 @@ TEST_CASE("displacement distribution: noise that is always 0 leaves the atom as 
 // Whatever the density is, a probability that lies within an atom has its place for a quantile.
 // Only one body in 13 meets a jump by that time, and what no jumps leave is less than that.
 TEST_CASE("displacement distribution: quantiles at atoms, though the density is not resolved",
-          "[real]") {
+          "[real][long]") {
   constexpr double time = 0.1;
   auto c = asking(test::pushed_by_telegraph(), {1e-4, 2e-3}, time, 0.05, kRest);
   c.question.arguments["probability"] = {0.1, 0.35, 0.65, 0.9};
@@ -219,7 +220,7 @@ TEST_CASE("displacement distribution: quantiles out of reach are said to be unkn
 }
 
 // Bodies that start with a velocity come to rest first, and short slips begin there.
-TEST_CASE("displacement distribution: simulated, within 4.5 sigma", "[real]") {
+TEST_CASE("displacement distribution: simulated, within 4.5 sigma", "[real][long]") {
   for (const model::Start& start : {kStationary, kRest, model::Start{0, 1}}) {
     const bool stationary = start.kind == Kind::stationary;
     const auto scene =
@@ -266,7 +267,7 @@ TEST_CASE("displacement distribution: speeds that are not reached by the time co
 
 // Over a short time densities have edges, and distribution functions oscillate within their errors.
 TEST_CASE("displacement distribution: quantiles lie within their errors, as far as is known",
-          "[real]") {
+          "[real][long]") {
   auto c = asking(test::pushed_by_telegraph(), {}, 0.5, 3e-2);
   c.method.degree = 4;
   c.question.arguments["probability"] = {0.7, 0.8, 0.9, 0.95};

@@ -180,7 +180,7 @@ TEST_CASE("large deviations: what a truncation velocity leaves out is in the err
   }
 }
 
-TEST_CASE("large deviations: chosen ends reach as far as the weight does", "[real]") {
+TEST_CASE("large deviations: chosen ends reach as far as the weight does", "[real][long]") {
   const auto s = test::scene(1, 0.5, 1, 0.125, {1, 0});
   auto full = s;
   full.noise_levels = s.full_levels();
