@@ -106,12 +106,11 @@ FourierInversion::FourierInversion(const Transform& phi, double mass, double mea
     double degrees = 0;
     for (std::size_t n = first; n < panels_.size(); ++n) degrees += panels_[n].degree();
     if (limits.furthest > 0) closest_ = degrees / (high - low);
-    const bool resolved = is_resolved(),
-               affordable = 3 * evaluations_ - 2 * before < kShareBeyond * limits.evaluations;
+    const bool affordable = 3 * evaluations_ - 2 * before < kShareBeyond * limits.evaluations;
     const double next =
         std::min(2 * high, high < limits.highest ? limits.highest : limits.furthest);
     open = !falls && next > high &&
-           (next <= limits.highest ? unforeseen > tolerance : !resolved && affordable);
+           (next <= limits.highest ? unforeseen > tolerance : !is_resolved() && affordable);
     low = high;
     high = next;
   }

@@ -95,7 +95,7 @@ class FourierInversion {
   // int f up to x within an error that holds for whatever f >= 0 has the phi known.
   [[nodiscard]] Value bounds(double x) const;
   void find_what_is_left(std::size_t first);  // on panels from that on, the last octave
-  // Whether so little is left that errors may be estimated; otherwise only bounds hold.
+  // Whether little enough is left of phi. Otherwise what follows from it says less of errors.
   [[nodiscard]] bool is_resolved() const;
   [[nodiscard]] Integrals singular(const Sum& sum, double x) const;
   // How far off int phi dk/k beyond the largest k may be: the terms foresee the next octave but for
