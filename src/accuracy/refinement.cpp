@@ -117,6 +117,7 @@ class Refiner {
     leave_out_failed(n, evaluation);
     remember_rounding(evaluation.results);
     if (!outcome_.steps.empty()) add_discretisation(n, evaluation.results);
+    keep_more_accurate(evaluation.results);
     outcome_.results = std::move(evaluation.results);
     outcome_.modes = std::move(evaluation.modes);
     follow(std::move(evaluation.distribution));
@@ -201,6 +202,18 @@ class Refiner {
                                             changes_, results);
   }
 
+  // Where rounding grows with the degree, an earlier step was better.
+  void keep_more_accurate(Results& results) const {
+    constexpr double much = 2, without_estimate = 2;
+    if (outcome_.steps.size() <= without_estimate) return;
+    for (std::size_t r = 0; r < results.size(); ++r) {
+      const auto& before = outcome_.results[r];
+      const double error = quantities::relative_error(results[r]);
+      const bool rounded = rounding_[r] > question_.accuracy && rounding_[r] > error / much;
+      if (rounded && error > much * quantities::relative_error(before)) results[r] = before;
+    }
+  }
+
   // A density and a truncation velocity given by hand need the distribution of |V|. How far its
   // distribution function moved is the density's own measure. It converges slowly (the density has
   // corners), so the whole change is taken for the error.
@@ -235,7 +248,7 @@ class Refiner {
     count_refinements_in_vain(step.resolution.waves.size() > before.resolution.waves.size());
     // What reduced models miss on coarse grids, and what sums over nodes overlook of an
     // observable, falls unevenly.
-    const int patience = question_.observables.empty() ? 2 : 3;
+    const int refinements = question_.observables.empty() ? 2 : 3;
     for (;;) {
       const double rounding = judge(step);
       if (step.estimate <= question_.accuracy) {
@@ -243,6 +256,7 @@ class Refiner {
         return true;
       }
       const Limit& limit = limits_[step.limiting_key];
+      const int patience = limiting(step).limited_by.empty() ? refinements : 1;
       if (limit.in_vain < patience && limit.without_digit < kRefinementsWithoutDigit) return false;
       give_up(step, rounding);
     }
@@ -263,21 +277,24 @@ class Refiner {
     }
   }
 
+  [[nodiscard]] const quantities::Result& limiting(const Step& step) const {
+    return *std::ranges::find(outcome_.results, step.limiting_key, &quantities::Result::key);
+  }
+
   void give_up(const Step& step, double rounding) {
     const std::string& key = step.limiting_key;
-    const auto& results = outcome_.results;
-    const auto& limiting = *std::ranges::find(results, key, &quantities::Result::key);
+    const auto& result = limiting(step);
     const double least = std::max(rounding, step.estimate);
     if (2 * least > outcome_.attainable) {
       outcome_.attainable = 2 * least;
-      limit_ = fmt::format("{} the relative error of {}{} to {:.1e}{}", what_limits(limits_[key]),
-                           key, quantities::where_unknown(limiting), least,
+      limit_ = fmt::format("{} the relative error of {}{} to {:.1e}{}", what_limits(result), key,
+                           quantities::where_unknown(result), least,
                            least < kLoosest ? "" : "; no digit of it is certain: leave it out");
     }
     given_up_.insert(key);
-    if (!over_modes(limiting)) return;
+    if (!over_modes(result)) return;
     // Rates and frequencies are of the same modes.
-    for (const auto& r : results) {
+    for (const auto& r : outcome_.results) {
       if (over_modes(r)) given_up_.insert(r.key);
     }
   }
@@ -309,8 +326,9 @@ class Refiner {
     }
   }
 
-  [[nodiscard]] const char* what_limits(const Limit& of) const {
-    if (of.without_digit > 0) return "what refinement cannot resolve limits";
+  [[nodiscard]] std::string what_limits(const quantities::Result& result) {
+    if (!result.limited_by.empty()) return result.limited_by;
+    if (limits_[result.key].without_digit > 0) return "what refinement cannot resolve limits";
     if (given_.scene.v_max && !given_.scene.limits_speed) return "-v_max, or rounding, limits";
     if (given_.method.row().small_lambda) return "lambda > 0 or rounding limits";
     if (question_.observables.empty()) return "rounding limits";

@@ -101,8 +101,8 @@ std::vector<Atom> atoms_at(const Computation& computation, double time) {
   return all;
 }
 
-// Few levels leave clusters far narrower than the deviation of all, which so many times larger
-// wavenumbers show.
+// Few levels, and starts in one state, leave parts far narrower than the deviation of all, which so
+// many times larger wavenumbers show.
 constexpr double kNarrower = 4;
 
 /// The distribution at one time: atoms, and a density that is singular where bodies rest: at 0, as
@@ -182,6 +182,7 @@ class Distribution {
     return all;
   }
   [[nodiscard]] bool resolves_tails() const { return weighs_ && inversion_; }
+  [[nodiscard]] bool is_resolved() const { return !inversion_ || inversion_->is_resolved(); }
 
  private:
   [[nodiscard]] static Tails mirrored(Tails which) {
@@ -283,8 +284,7 @@ void Distribution::invert(double time) {
   const double units = std::exp2(std::ceil(-std::log10(question.accuracy)));
   lowest_ = centre_ + mean_ - furthest * spread_;
   highest_ = centre_ + mean_ + furthest * spread_;
-  const double highest = units * 2 / spread_,
-               last = computation_.process().noise.table ? kNarrower * highest : 0;
+  const double highest = units * 2 / spread_, last = kNarrower * highest;
   inversion_.emplace(phi, mass_, mean_, spread_, even_,
                      Inversion::Limits{0.3 * question.accuracy, highest, 400, last});
 }
@@ -310,6 +310,10 @@ void find_displacements(Computation& computation) {
       result.tails_by_their_size =
           &row == &catalogue::kDisplacementCdf && distribution.resolves_tails();
       for (double x : abscissa) append_value(result, (distribution.*of)(x));
+      if (!distribution.is_resolved()) {
+        result.limited_by =
+            "parts of the density too narrow for the wavenumbers that were tried limit";
+      }
       results.push_back(std::move(result));
     };
     append(catalogue::kDisplacementDensity, question.distance, &Distribution::density);

@@ -28,7 +28,7 @@ CASES = {
     "observables": OF_BODIES + "-quantities averages -observable "
                    "'v>{0.3};abs(v)*exp(-((v-{0.7})/{0.01})^2)/{1};v>{1}?(v/{1})^2:1'",
     "passages": OF_BODIES + "-drag_coefficient 0.5 -quantities first_passage,displacement,displacement_distribution "
-                "-velocity {0.5},{1} -time 1,3 -distance {0.5},{1} -start s+ -accuracy 1e-3",
+                "-velocity {0.5},{1} -time 3 -distance {0.5},{1} -start rest -accuracy 3e-2",
     "a large bias": EXPRESSION + "-v -bias {3.5}",
     "a jump, which is refused": EXPRESSION + "'abs(v)<{1}?-v:-1.1*v'",
     "an infinite slope, which is refused": EXPRESSION + "'-sqrt(abs(v)/{1})*sign(v)*{1}'",

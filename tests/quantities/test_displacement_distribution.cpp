@@ -57,7 +57,7 @@ TEST_CASE("displacement distribution: the atom in closed form", "[real][long]") 
   const double left = std::exp(-0.8 * time);
   const auto values_from = [](const std::vector<double>& distance, double t,
                               const model::Start& start) {
-    auto c = asking(test::pushed_by_telegraph(), distance, t, 0.05, start);
+    auto c = asking(test::pushed_by_telegraph(), distance, t, 0.15, start);
     c.method.degree = 3;
     return values_at_the_time(c);
   };
@@ -103,7 +103,7 @@ TEST_CASE("displacement distribution: noise that is always 0 leaves the atom as 
     s.noise.table = std::make_shared<const model::LevelTable>(table);
     const int highest = table.highest();
     for (const auto& start : {model::Start{highest, 0}, model::Start{highest, 0.4}}) {
-      auto c = asking(s, {1}, 1, 0.05, start);
+      auto c = asking(s, {1}, 1, 0.3, start);
       c.method.degree = 3;
       const auto atom = values_at_the_time(c).at("displacement_atom");
       CHECK(atom.value[0] == Approx(std::exp(-1)).epsilon(1e-12));
@@ -140,7 +140,7 @@ TEST_CASE("displacement distribution: mean and variance are those of the displac
   constexpr double step = 0.002, most = 2.8, time = 1.5;
   std::vector<double> distance;
   for (int n = 1; step * n * n < most; ++n) distance.push_back(step * n * n);
-  auto c = asking(test::pushed_by_telegraph(), distance, time, 1e-3);
+  auto c = asking(test::pushed_by_telegraph(), distance, time, 1e-2);
   c.question.quantities.insert(Quantity::displacement);
   const auto found = values_at_the_time(c);
   const auto& cdf = found.at("displacement_cdf").value;

@@ -173,7 +173,7 @@ SCENES = (
           "resolvent", delta=0.5, quantities="sticking,resolvent", observable="stick;v^2;x*v",
           **{"lambda": "1e-14,1e-8,1e-3,1,1e4,1e8,1e12"}),
     scene("omega from 0 to 1e8", "far out 24 digits cancel in the direct formula",
-          "spectrum reference", delta=0.5, quantities="sticking,moments,spectrum",
+          "spectrum reference", delta=0.5, accuracy=3e-9, quantities="sticking,moments,spectrum",
           omega="0,1e-12,1e-3,1,20,1e4,1e7,1e8"),
     scene("waves, mu_d 1e-12 above a level", "as short as 1e-12 on the level that nearly stands",
           "spectrum reference", mu_s=1.5, mu_d=1 + EPS, delta=1, accuracy=1e-6,

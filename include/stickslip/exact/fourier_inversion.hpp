@@ -55,6 +55,8 @@ class FourierInversion {
   [[nodiscard]] Value density(double x) const { return between(x, &Integrals::density); }
   /// int f from -infinity to x. O(highest |x|).
   [[nodiscard]] Value below(double x) const;
+  /// Whether little enough is left of phi. Otherwise what follows from it says less of errors.
+  [[nodiscard]] bool is_resolved() const;
   /// How often phi has been asked for.
   [[nodiscard]] int evaluations() const { return evaluations_; }
 
@@ -95,8 +97,6 @@ class FourierInversion {
   // int f up to x within an error that holds for whatever f >= 0 has the phi known.
   [[nodiscard]] Value bounds(double x) const;
   void find_what_is_left(std::size_t first);  // on panels from that on, the last octave
-  // Whether little enough is left of phi. Otherwise what follows from it says less of errors.
-  [[nodiscard]] bool is_resolved() const;
   [[nodiscard]] Integrals singular(const Sum& sum, double x) const;
   // How far off int phi dk/k beyond the largest k may be: the terms foresee the next octave but for
   // so much, each further one by half of that more, and phi falls like k^(-1/2) at least.

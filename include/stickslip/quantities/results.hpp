@@ -32,6 +32,8 @@ struct Result {
   /// Whether its error decides nothing: it shows how good others are and was not asked for, or it
   /// is the derivative of another one that decides.
   bool diagnostic = false;
+  /// What limits its error where no finer discretisation lowers it, in words; else empty.
+  std::string limited_by = {};
   /// Of a derivative dA/dp: |A/p|. Where it has no digit, and less than 1e-6 of that for its error,
   /// it is 0 as far as it matters, and judged by this size.
   double scale = 0;
