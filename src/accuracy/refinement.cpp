@@ -204,7 +204,8 @@ class Refiner {
 
   // Where rounding grows with the degree, an earlier step was better.
   void keep_more_accurate(Results& results) const {
-    constexpr double much = 2, without_estimate = 2;
+    constexpr double much = 2;
+    constexpr std::size_t without_estimate = 2;
     if (outcome_.steps.size() <= without_estimate) return;
     for (std::size_t r = 0; r < results.size(); ++r) {
       const auto& before = outcome_.results[r];

@@ -30,7 +30,6 @@ Method read_method(const Settings& settings) {
           .noise_grading = settings.real("noise_grading"),
           .factors = operators::given_factors(),
           .spectrum_solver = meaning(kSpectrumSolvers, settings.text("spectrum_solver")),
-          .transient_solver = meaning(kTransientSolvers, settings.text("transient_solver")),
           .excursions = settings.real("excursions"),
           .seed = static_cast<std::uint64_t>(settings.real("seed"))};
 }

@@ -61,10 +61,9 @@ class Rules {
                    : study_     ? Subject::study
                    : swept      ? Subject::sweep
                                 : Subject::run);
-    for (const char* option :
-         {"observable", "start", "horizon", "transient_solver", "spectrum_solver", "passage",
-          "force_file", "force_interpolation", "force_scale", "force_rest", "sample_layout",
-          "sample_step", "force_gravity"}) {
+    for (const char* option : {"observable", "start", "horizon", "spectrum_solver", "passage",
+                               "force_file", "force_interpolation", "force_scale", "force_rest",
+                               "sample_layout", "sample_step", "force_gravity"}) {
       warn({option}, !asked(option));
     }
     const bool lifts = r_.scene.force && !r_.scene.force->load.empty();

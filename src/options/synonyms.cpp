@@ -17,7 +17,7 @@ constexpr struct {
   const char *beginning, *solvers;
 } kFamilies[] = {{"ksp_", "slide_"},       {"pc_", "slide_"},      {"sub_", "slide_"},
                  {"mat_mumps_", "slide_"}, {"mat_view", "slide_"}, {"eps_", "relax_, null_"},
-                 {"st_", "relax_, null_"}, {"ts_", "backward_"},   {"snes_", "backward_"}};
+                 {"st_", "relax_, null_"}};
 
 const Synonyms* synonyms_of(const std::string& other, const std::string& option) {
   for (const auto& row : all_synonyms()) {

@@ -134,9 +134,6 @@ std::vector<Option> method_options() {
           "krylov: two-sided rational Krylov projection, a few real factorisations for all "
           "frequencies but those whose waves need elements of their own. direct: complex factors "
           "for each frequency, a check that gives the spectrum and the diffusivity"),
-      choice("transient_solver", "krylov", words_of(kTransientSolvers),
-             "krylov: reduced models for all times at once. stepping: the backward Kolmogorov "
-             "equation by PETSc's time steppers (-backward_ts_...), a check"),
       flag("plan",
            "print the systems to assemble, factor and solve, with predicted unknowns, non-zeros, "
            "memory and time, and stop"),

@@ -22,8 +22,6 @@ inline constexpr Word<SpectrumSolver> kSpectrumSolvers[] = {{"krylov", SpectrumS
                                                             {"direct", SpectrumSolver::direct}};
 inline constexpr Word<model::Passage> kPassages[] = {
     {"both", model::Passage::both}, {"up", model::Passage::up}, {"down", model::Passage::down}};
-inline constexpr Word<TransientSolver> kTransientSolvers[] = {
-    {"krylov", TransientSolver::krylov}, {"stepping", TransientSolver::stepping}};
 inline constexpr Word<StudyKind> kStudies[] = {
     {"none", StudyKind::none},           {"p", StudyKind::points},
     {"delta", StudyKind::steps},         {"tau", StudyKind::white_noise},

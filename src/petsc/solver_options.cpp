@@ -47,9 +47,7 @@ const SolverRole kRoles[] = {
      "sub_pc_factor_levels ksp_type ksp_rtol ksp_atol ksp_max_it ksp_gmres_restart "
      "ksp_monitor"},
     {"null_", probe_eigensolver, kEpsLater, kEpsCommon},
-    {"relax_", probe_eigensolver, kEpsLater, kEpsCommon},
-    {"backward_", probe_time_stepper, "ts_view ts_view_pre ts_adapt_view snes_view ksp_view",
-     "ts_type ts_max_steps ts_monitor ts_rtol ts_atol"}};
+    {"relax_", probe_eigensolver, kEpsLater, kEpsCommon}};
 
 // The role that has options of that name; nullptr if none has.
 const SolverRole* role_of(const std::string& name) {

@@ -2,12 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "stickslip/catalogue/autocorrelation_keys.hpp"
 #include "stickslip/catalogue/expectation_keys.hpp"
 #include "stickslip/petsc/check.hpp"
-#include "stickslip/petsc/time_stepper.hpp"
 #include "stickslip/petsc/vectors.hpp"
 #include "stickslip/quantities/plan.hpp"
 #include "stickslip/quantities/time_functions.hpp"
@@ -21,48 +19,16 @@ using operators::Symmetry;
 using petsc::check;
 using petsc::dot;
 
-std::vector<std::size_t> rising(const std::vector<double>& time) {
-  std::vector<std::size_t> order(time.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(),
-            [&](std::size_t a, std::size_t b) { return time[a] < time[b]; });
-  return order;
-}
-
-std::vector<double> stepped(operators::Systems& systems, const KolmogorovOperator& a, Vec b, Vec c,
-                            const std::vector<double>& time, double tolerance) {
-  const petsc::VecHandle u = petsc::copy_of(b);
-  petsc::TimeStepper stepper(a.matrix(), u, kBackwardPrefix, tolerance, systems.statistics());
-  std::vector<double> values(time.size());
-  for (std::size_t n : rising(time)) {
-    stepper.advance(time[n]);
-    values[n] = dot(c, u);
-  }
-  return values;
-}
-
 // c exp(L t) b; errors in units of `unit`.
-std::vector<Uncertain> curve(const std::string& name, operators::Systems& systems,
+std::vector<Uncertain> curve(const std::string& name, const model::Process& process,
                              const StationaryDistribution& distribution, ProcessPencil& pencil,
                              Vec b, Vec c, ReducedModel::Nature nature,
-                             const std::vector<double>& time, double unit, TransientMethod method,
+                             const std::vector<double>& time, double unit,
                              const ModelTolerance& tolerance) {
-  const KolmogorovOperator& a = pencil.a();
-  if (method == TransientMethod::krylov) {
-    const petsc::VecHandle weight = distribution.weight_on(a);
-    return time_curve(pencil, {b, c, weight}, nature, {{0, unit}}, time,
-                      time_scales(systems.process()), tolerance.value, tolerance.recipe(name))
-        .value[0];
-  }
-  // Errors of steps add up; a run with coarser steps shows how far.
-  const double fine = 0.03 * tolerance.value * unit, coarse = 10 * fine;
-  const auto values = stepped(systems, a, b, c, time, fine);
-  const auto others = stepped(systems, a, b, c, time, coarse);
-  std::vector<Uncertain> result;
-  for (std::size_t n = 0; n < time.size(); ++n) {
-    result.push_back({values[n], std::max(fine, std::abs(values[n] - others[n]))});
-  }
-  return result;
+  const petsc::VecHandle weight = distribution.weight_on(pencil.a());
+  return time_curve(pencil, {b, c, weight}, nature, {{0, unit}}, time, time_scales(process),
+                    tolerance.value, tolerance.recipe(name))
+      .value[0];
 }
 
 }  // namespace
@@ -86,19 +52,18 @@ bool counts(Vec functional) {
 
 std::vector<Uncertain> autocorrelation(operators::Systems& systems,
                                        const StationaryDistribution& distribution,
-                                       const std::vector<double>& time, TransientMethod method,
+                                       const std::vector<double>& time,
                                        const ModelTolerance& tolerance) {
   ProcessPencil whole(systems, distribution.velocity_symmetry(), StaticPhase::kept);
   const auto velocity = distribution.velocity(whole.a());
   const double variance = dot(velocity.c, velocity.b);
-  return curve("autocorrelation", systems, distribution, whole, velocity.b, velocity.c,
-               ReducedModel::Nature::smooth, time, variance, method, tolerance);
+  return curve("autocorrelation", systems.process(), distribution, whole, velocity.b, velocity.c,
+               ReducedModel::Nature::smooth, time, variance, tolerance);
 }
 
 Expectation expectation(operators::Systems& systems, const StationaryDistribution& distribution,
                         const model::Observable& f, const model::Start& start,
-                        const std::vector<double>& time, TransientMethod method,
-                        const ModelTolerance& tolerance) {
+                        const std::vector<double>& time, const ModelTolerance& tolerance) {
   Expectation result;
   result.value.resize(time.size());
   double unseen = 0;
@@ -128,8 +93,8 @@ Expectation expectation(operators::Systems& systems, const StationaryDistributio
     const petsc::VecHandle c = start_on(a, start);
     if (!counts(c)) continue;  // as odd functions at rest at x = 0
     const std::string name = "E(" + f.name + ")" + std::to_string(static_cast<int>(symmetry));
-    const auto of_part = curve(name, systems, distribution, whole, b, c, nature_of(start), time,
-                               unit, method, tolerance);
+    const auto of_part = curve(name, systems.process(), distribution, whole, b, c, nature_of(start),
+                               time, unit, tolerance);
     for (std::size_t n = 0; n < time.size(); ++n) result.value[n] = result.value[n] + of_part[n];
   }
   for (auto& value : result.value) value.error += unseen;
@@ -138,25 +103,18 @@ Expectation expectation(operators::Systems& systems, const StationaryDistributio
 
 namespace {
 
-TransientMethod method_of(const Computation& computation) {
-  const bool krylov =
-      computation.problem.given.method.transient_solver == cases::TransientSolver::krylov;
-  return krylov ? TransientMethod::krylov : TransientMethod::stepping;
-}
-
 void find_autocorrelation(Computation& computation) {
   const auto& time = computation.question().time;
   const auto values = autocorrelation(computation.systems, computation.distribution(), time,
-                                      method_of(computation), computation.tolerance());
+                                      computation.tolerance());
   append_array(array(catalogue::kAutocovariance, time), values, computation.results());
 }
 
 void find_expectations(Computation& computation) {
   const auto& question = computation.question();
   for (const auto& f : question.observables) {
-    const auto found =
-        expectation(computation.systems, computation.distribution(), f, question.start,
-                    question.time, method_of(computation), computation.tolerance());
+    const auto found = expectation(computation.systems, computation.distribution(), f,
+                                   question.start, question.time, computation.tolerance());
     auto& results = computation.results();
     append_array(array(blank(catalogue::kExpectationOf, f), question.time), found.value, results);
     results.push_back(scalar(blank(catalogue::kStationaryOf, f), found.stationary, found.unseen));

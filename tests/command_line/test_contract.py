@@ -70,7 +70,6 @@ class Refusals(Case):
         self.refuse(*SMALL, "-relax_eps_tpye", "x", message=("did you mean -relax_eps_type?",))
         self.refuse(*SMALL, "-quantities", "relaxation", "-relax_eps_ncv", "3", message=("ncv must be at least nev+1",))
         self.run_ok(*SMALL, "-relax_eps_target", "3", "-accuracy", "1e-3")
-        self.refuse(*SMALL, "-backward_ts_type", "foo", message=("-backward_ts_type = foo:",))
         self.refuse(*SMALL, "-slide_pc_factor_mat_solver_type", "foo",
                     message=("-slide_pc_factor_mat_solver_type = foo:",))
         for option, choice in (("ksp_rtol", "ksp_type gmres"), ("ksp_gmres_restart", "ksp_type gmres"),

@@ -390,8 +390,6 @@ TEST_CASE("request: an option that serves one purpose is reported where it serve
       {"-time 1", "-time = 1 has no effect on the quantities asked for"},
       {"-start s-", "-start = s- has no effect on the quantities asked for"},
       {"-horizon 5", "-horizon = 5 has no effect on the quantities asked for"},
-      {"-transient_solver krylov",
-       "-transient_solver = krylov has no effect on the quantities asked for"},
       {"-spectrum_solver krylov",
        "-spectrum_solver = krylov has no effect on the quantities asked for"},
       {"-excursions 9", "-excursions = 9 has no effect without -route monte_carlo"},
@@ -414,8 +412,6 @@ TEST_CASE("request: an option that serves one purpose is reported where it serve
         "-plan -quantities density -output o.h5", "-plan -quantities trajectory -trajectory t.csv",
         "-drag cubic -drag_coefficient 2 -drag_cubic 2",
         "-quantities spectrum -omega 1 -spectrum_solver krylov",
-        "-quantities duration_density,autocorrelation -time 1 -transient_solver stepping",
-        "-quantities expectation -observable v -time 1 -start s- -transient_solver stepping",
         "-quantities trajectory -output t.h5 -start s- -horizon 5 -seed 7"}) {
     INFO(line);
     CHECK(Given(line).read().warnings.empty());

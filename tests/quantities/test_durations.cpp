@@ -11,7 +11,6 @@
 #include "stickslip/algebra/dense.hpp"
 #include "stickslip/catalogue/phase_durations_keys.hpp"
 #include "stickslip/petsc/check.hpp"
-#include "stickslip/petsc/time_stepper.hpp"
 #include "stickslip/quantities/durations.hpp"
 #include "stickslip/quantities/laplace.hpp"
 #include "stickslip/velocity/upwind_discretisation.hpp"
@@ -79,39 +78,6 @@ Uncertain integral(const test::Quadrature& q, const DurationDistribution& durati
 void check_moment(Uncertain found, double known, double relative) {
   INFO("off by " << found.value / known - 1 << ", stated " << found.error / known);
   CHECK(std::abs(found.value - known) < relative * known + found.error);
-}
-
-// c exp(-A t) b by time steps.
-std::vector<double> stepped(const KolmogorovOperator& a, const petsc::VecHandle& b, Vec c,
-                            const std::vector<double>& time, double tolerance) {
-  petsc::SolverStatistics statistics;
-  petsc::TimeStepper stepper(a.matrix(), b, "test_", tolerance, statistics);
-  std::vector<double> values;
-  for (double t : time) {
-    PetscScalar value = 0;
-    stepper.advance(t);
-    check(VecTDot(c, b, &value));
-    values.push_back(PetscRealPart(value));
-  }
-  return values;
-}
-
-std::vector<double> stepped_slide(Solved& s, const std::vector<double>& time, double tolerance) {
-  const auto& process = s.systems.process();
-  const KolmogorovOperator a(s.systems.comm(), s.systems.discretisation(), 0.0, Symmetry::even,
-                             StaticPhase::killing);
-  const auto levels = 2 * static_cast<std::size_t>(process.highest_static()) + 1;
-  const auto ends = a.from_static(std::vector<PetscScalar>(levels, 1.0));
-  return stepped(a, ends, a.trace_at_exit(), time, tolerance);
-}
-
-std::vector<double> stepped_excursion(Solved& s, const std::vector<double>& time,
-                                      double tolerance) {
-  const KolmogorovOperator a(s.systems.comm(), s.systems.discretisation(), 0.0, Symmetry::even,
-                             StaticPhase::killed_on_exit);
-  const auto one = a.values([](double, double, double) { return 1.0; }), ends = a.zeros();
-  check(MatMult(a.matrix(), one, ends));
-  return stepped(a, ends, a.trace_at_exit(), time, tolerance);
 }
 
 /// Durations on the whole grid of the paper: a dense chain, killed where a sliding phase ends, or
@@ -278,34 +244,6 @@ TEST_CASE("durations: upwind equals dense exponentials on the whole grid", "[par
       CHECK(std::abs(all.excursion.density[n].value - excursion.density(time[n])) < 1e-8);
       CHECK(std::abs(all.excursion.distribution[n].value - excursion.distribution(time[n])) < 1e-8);
     }
-  }
-}
-
-// A sliding phase ends in a point: on hp elements time steps carry that as wiggles, which the
-// reduced model has not. An excursion ends at rest, and an upwind chain has no wiggles.
-TEST_CASE("durations: time steps give the same densities") {
-  const std::vector<double> time{0.1, 0.5, 2, 8};
-  for (const auto& d : {test::on_upwind(scene(1, 0.25, 1, 0.5, {1, 0}), 2),
-                        test::on_upwind(scene(0.7, 0.7, 1, 0.5, {0, 0}), 2)}) {
-    Solved s(d);
-    const auto all = distributions(s, time, 1e-8);
-    const auto slide = stepped_slide(s, time, 1e-8), excursion = stepped_excursion(s, time, 1e-8);
-    for (std::size_t n = 0; n < time.size(); ++n) {
-      INFO("mu_d " << d.process.friction.mu_d << " time " << time[n]);
-      CHECK(std::abs(all.slide.density[n].value - slide[n]) < 1e-6);
-      CHECK(std::abs(all.excursion.density[n].value - excursion[n]) < 1e-6);
-    }
-  }
-}
-
-TEST_CASE("durations: time steps on hp elements give the same excursions") {
-  const std::vector<double> time{0.1, 0.5, 2, 8};
-  Solved s(test::on_hp(scene(1, 0.25, 1, 0.5, {1, 0}), 7, 1e-9));
-  const auto duration = quantities::excursion_distribution(s.systems, s.distribution, time, 1e-8);
-  const auto steps = stepped_excursion(s, time, 1e-8);
-  for (std::size_t n = 0; n < time.size(); ++n) {
-    INFO("time " << time[n]);
-    CHECK(std::abs(duration.density[n].value - steps[n]) < 1e-6);
   }
 }
 

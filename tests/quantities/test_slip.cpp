@@ -189,8 +189,7 @@ TEST_CASE("displacement: spreads by the autocovariance, and at last with S_0", "
         weight.push_back(Rule::weights()[n] / 2);
       }
     }
-    const auto c = quantities::autocorrelation(solved.systems, solved.distribution, lag,
-                                               quantities::TransientMethod::krylov, 1e-10);
+    const auto c = quantities::autocorrelation(solved.systems, solved.distribution, lag, 1e-10);
     double variance = 0;
     for (std::size_t n = 0; n < lag.size(); ++n) {
       variance += 2 * weight[n] * (1 - lag[n]) * c[n].value;

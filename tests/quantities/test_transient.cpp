@@ -12,15 +12,12 @@
 
 using namespace stickslip;
 using model::Start;
-using quantities::TransientMethod;
 using quantities::Uncertain;
 using test::relative_difference;
 using test::scene;
 using test::Solved;
 
 namespace {
-
-constexpr TransientMethod kMethods[] = {TransientMethod::krylov, TransientMethod::stepping};
 
 // At rest, at s+ and s-, beyond mu_s at v = 0, and in motion: mu_s = 1, delta = 1/2.
 const std::vector<Start>& starts() {
@@ -45,10 +42,8 @@ double at_start(const model::Process& process, const model::Observable& f, const
 }
 
 std::vector<Uncertain> expectation(Solved& s, const model::Observable& f, const Start& start,
-                                   const std::vector<double>& time, TransientMethod method,
-                                   double tolerance) {
-  return quantities::expectation(s.systems, s.distribution, f, start, time, method, tolerance)
-      .value;
+                                   const std::vector<double>& time, double tolerance) {
+  return quantities::expectation(s.systems, s.distribution, f, start, time, tolerance).value;
 }
 
 test::Discrete small_hp(double mu_d = 0.25) {
@@ -64,31 +59,9 @@ test::Discrete on_all_levels(const model::Scene& s) {
 TEST_CASE("transient: at time 0 the autocorrelation is the variance", "[parallel]") {
   for (const auto& d : {small_hp(), small_upwind()}) {
     Solved s(d);
-    for (const auto method : kMethods) {
-      const auto c = quantities::autocorrelation(s.systems, s.distribution, {1, 0}, method, 1e-6);
-      CHECK(relative_difference(c[1].value, s.mean_square_velocity()) < 1e-12);
-      CHECK(c[0].value < c[1].value);
-    }
-  }
-}
-
-TEST_CASE("transient: time steps and reduced models give the same autocorrelation", "[slow]") {
-  const std::vector<double> time{30, 0, 1e-3, 0.1, 0.5, 1, 3, 10};  // in any order
-  for (const auto& d :
-       {small_hp(), small_upwind(), test::on_hp(scene(1, 1, 1, 0.5, {0, 0}), 5, 1e-7),
-        test::on_hp(scene(1, 0.25, 0.25, 1, {1, 0}), 5, 1e-7)}) {
-    Solved s(d);
-    const auto reduced =
-        quantities::autocorrelation(s.systems, s.distribution, time, TransientMethod::krylov, 1e-8);
-    const auto steps = quantities::autocorrelation(s.systems, s.distribution, time,
-                                                   TransientMethod::stepping, 1e-6);
-    const double unit = s.mean_square_velocity();
-    for (std::size_t n = 0; n < time.size(); ++n) {
-      INFO("mu_d " << d.process.friction.mu_d << " time " << time[n]);
-      CHECK(std::abs(reduced[n].value - steps[n].value) < 1e-6 * unit);
-      CHECK(reduced[n].error < 1e-8 * unit);
-      CHECK(steps[n].error < 1e-6 * unit);
-    }
+    const auto c = quantities::autocorrelation(s.systems, s.distribution, {1, 0}, 1e-6);
+    CHECK(relative_difference(c[1].value, s.mean_square_velocity()) < 1e-12);
+    CHECK(c[0].value < c[1].value);
   }
 }
 
@@ -100,8 +73,7 @@ TEST_CASE("transient: the cosine transform of the autocorrelation is the spectru
     Solved s(d);
     const double end = d.process.drag.bounds_velocity() ? 30 : 80;
     const auto q = test::panels(0, end, static_cast<int>(2 * end));
-    const auto c = quantities::autocorrelation(s.systems, s.distribution, q.node,
-                                               TransientMethod::krylov, 1e-9);
+    const auto c = quantities::autocorrelation(s.systems, s.distribution, q.node, 1e-9);
     const auto known =
         quantities::reduced_spectrum(s.systems, s.distribution, omega, 1e-9).spectrum;
     for (std::size_t w = 0; w < omega.size(); ++w) {
@@ -119,13 +91,9 @@ TEST_CASE("transient: at time 0 expectations are the values at the start", "[par
   for (const auto& d : {small_hp(), small_upwind()}) {
     Solved s(d);
     for (const auto& start : starts()) {
-      const auto u = expectation(s, f, start, {0, 0.5}, TransientMethod::krylov, 1e-7);
+      const auto u = expectation(s, f, start, {0, 0.5}, 1e-7);
       INFO("level " << start.level << " v " << start.v);
       CHECK(u[0].value == Approx(at_start(d.process, f, start)).margin(1e-6));
-    }
-    for (const auto& start : {Start{1, 0}, {3, 0}, {-2, -0.5}}) {
-      const auto u = expectation(s, f, start, {0}, TransientMethod::stepping, 1e-4);
-      CHECK(u[0].value == Approx(at_start(d.process, f, start)).margin(1e-11));
     }
   }
 }
@@ -135,8 +103,7 @@ TEST_CASE("transient: rest is known at rest only") {
     Solved s(d);
     for (const auto& start : starts()) {
       const bool rest = start.v == 0 && std::abs(start.level) <= 2;
-      const auto u =
-          expectation(s, observable("stick"), start, {0, 1}, TransientMethod::krylov, 1e-6);
+      const auto u = expectation(s, observable("stick"), start, {0, 1}, 1e-6);
       INFO("level " << start.level << " v " << start.v);
       CHECK(u[0].value == Approx(rest ? 1 : 0).margin(1e-5));
       CHECK(u[1].value > 0);
@@ -149,14 +116,14 @@ TEST_CASE("transient: late expectations are the stationary ones") {
   for (const auto& d : {small_hp(), small_upwind()}) {
     Solved s(d);
     const auto& e = s.distribution.excursion();
-    const auto late = [&](const char* name, const Start& start, TransientMethod method) {
+    const auto late = [&](const char* name, const Start& start) {
       return quantities::expectation(s.systems, s.distribution, observable(name), start, {60},
-                                     method, 1e-6);
+                                     1e-6);
     };
     for (const auto& start : {Start{-2, 0}, {3, 0}, {-2, -0.5}}) {
-      const auto square = late("v^2", start, TransientMethod::krylov);
-      const auto stick = late("stick", start, TransientMethod::krylov);
-      const auto mean = late("v", start, TransientMethod::krylov);
+      const auto square = late("v^2", start);
+      const auto stick = late("stick", start);
+      const auto mean = late("v", start);
       CHECK(relative_difference(square.stationary, s.mean_square_velocity()) < 1e-12);
       CHECK(relative_difference(stick.stationary, e.mean_stick() / e.mean_excursion()) < 1e-12);
       CHECK(mean.stationary == 0);
@@ -164,8 +131,6 @@ TEST_CASE("transient: late expectations are the stationary ones") {
       CHECK(relative_difference(stick.value[0].value, stick.stationary) < 1e-6);
       CHECK(std::abs(mean.value[0].value) < 1e-6);
     }
-    const auto steps = late("v^2", {3, 0}, TransientMethod::stepping);
-    CHECK(relative_difference(steps.value[0].value, steps.stationary) < 1e-6);
   }
 }
 
@@ -177,10 +142,8 @@ TEST_CASE("transient: the noise forgets its start in closed form", "[parallel]")
     Solved s(d);
     for (const auto& start : {Start{1, 0}, {-3, 0}, {-2, 0.5}}) {
       const double x = d.process.noise.level(start.level);
-      const auto first =
-          expectation(s, observable("x"), start, time, TransientMethod::krylov, 1e-9);
-      const auto second =
-          expectation(s, observable("x^2"), start, time, TransientMethod::krylov, 1e-9);
+      const auto first = expectation(s, observable("x"), start, time, 1e-9);
+      const auto second = expectation(s, observable("x^2"), start, time, 1e-9);
       for (std::size_t n = 0; n < time.size(); ++n) {
         const double left = std::exp(-time[n] / tau);
         INFO("tau " << tau << " level " << start.level << " time " << time[n]);
@@ -191,32 +154,12 @@ TEST_CASE("transient: the noise forgets its start in closed form", "[parallel]")
   }
 }
 
-TEST_CASE("transient: time steps forget the start of the noise too, within their errors") {
-  const std::vector<double> time{0, 0.01, 0.3, 0.5, 1, 4};
-  for (double tau : {1.0, 2.0}) {
-    const auto d = on_all_levels(scene(1, 0.25, tau, 0.5, {1, 0}));
-    Solved s(d);
-    for (const auto& start : {Start{1, 0}, {-3, 0}}) {
-      const double x = d.process.noise.level(start.level);
-      const auto u = expectation(s, observable("x"), start, time, TransientMethod::stepping, 1e-6);
-      for (std::size_t n = 0; n < time.size(); ++n) {
-        const double difference = std::abs(u[n].value - x * std::exp(-time[n] / tau));
-        INFO("tau " << tau << " level " << start.level << " time " << time[n]);
-        CHECK(difference < 1e-6 * std::max(1.0, std::abs(x)));
-        CHECK(difference <= 10 * u[n].error + 1e-8);
-      }
-    }
-  }
-}
-
 TEST_CASE("transient: 1 stays 1", "[parallel]") {
   for (const auto& d : {small_hp(), small_upwind()}) {
     Solved s(d);
-    for (const auto method : kMethods) {
-      for (const auto& start : {Start{0, 0}, {3, 0}, {-2, -0.5}}) {
-        const auto u = expectation(s, observable("1"), start, {0, 0.1, 5, 100}, method, 1e-6);
-        for (const auto& value : u) CHECK(std::abs(value.value - 1) < 1e-11);
-      }
+    for (const auto& start : {Start{0, 0}, {3, 0}, {-2, -0.5}}) {
+      const auto u = expectation(s, observable("1"), start, {0, 0.1, 5, 100}, 1e-6);
+      for (const auto& value : u) CHECK(std::abs(value.value - 1) < 1e-11);
     }
   }
 }
@@ -227,7 +170,7 @@ TEST_CASE("transient: an eigenfunction stays 0 where it is 0", "[parallel]") {
   const model::Observable f{"variance", [](double x, double, double) { return x * x - 1; }};
   for (const auto& d : {on_all_levels(scene(1, 0.25, 1, 0.5, {1, 0})), small_upwind()}) {
     Solved s(d);
-    for (const auto& u : expectation(s, f, {-2, 0}, {0, 1}, TransientMethod::krylov, 1e-8)) {
+    for (const auto& u : expectation(s, f, {-2, 0}, {0, 1}, 1e-8)) {
       CHECK(std::abs(u.value) < 1e-12);
     }
   }
@@ -236,13 +179,11 @@ TEST_CASE("transient: an eigenfunction stays 0 where it is 0", "[parallel]") {
 TEST_CASE("transient: odd functions vanish from rest at 0") {
   for (const auto& d : {small_hp(), small_upwind()}) {
     Solved s(d);
-    for (const auto method : kMethods) {
-      const auto odd = expectation(s, observable("v"), {0, 0}, {0, 1, 5}, method, 1e-6);
-      for (const auto& value : odd) CHECK(std::abs(value.value) < 1e-12);
-      const auto both = expectation(s, observable("x+v^2"), {0, 0}, {2}, method, 1e-6);
-      const auto even = expectation(s, observable("v^2"), {0, 0}, {2}, method, 1e-6);
-      CHECK(both[0].value == Approx(even[0].value).epsilon(1e-6));
-    }
+    const auto odd = expectation(s, observable("v"), {0, 0}, {0, 1, 5}, 1e-6);
+    for (const auto& value : odd) CHECK(std::abs(value.value) < 1e-12);
+    const auto both = expectation(s, observable("x+v^2"), {0, 0}, {2}, 1e-6);
+    const auto even = expectation(s, observable("v^2"), {0, 0}, {2}, 1e-6);
+    CHECK(both[0].value == Approx(even[0].value).epsilon(1e-6));
   }
 }
 
@@ -250,18 +191,16 @@ TEST_CASE("transient: what is expected of f scales with f") {
   const std::vector<double> time{0.3, 2};
   for (const auto& d : {small_hp(), small_upwind()}) {
     Solved s(d);
-    for (const auto method : kMethods) {
-      const auto one = expectation(s, observable("v^2"), {3, 0}, time, method, 1e-6);
-      for (const char* text : {"1000000*v^2", "0.000001*v^2"}) {
-        const double factor = std::stod(text);
-        const auto other = expectation(s, observable(text), {3, 0}, time, method, 1e-6);
-        for (std::size_t n = 0; n < time.size(); ++n) {
-          INFO(text << " time " << time[n]);
-          CHECK(relative_difference(other[n].value, factor * one[n].value) < 1e-6);
-          // Of the size of 1e-6 of f, and not of rounding.
-          CHECK(other[n].error < 1e-3 * factor);
-          CHECK(other[n].error > 1e-17 * factor);
-        }
+    const auto one = expectation(s, observable("v^2"), {3, 0}, time, 1e-6);
+    for (const char* text : {"1000000*v^2", "0.000001*v^2"}) {
+      const double factor = std::stod(text);
+      const auto other = expectation(s, observable(text), {3, 0}, time, 1e-6);
+      for (std::size_t n = 0; n < time.size(); ++n) {
+        INFO(text << " time " << time[n]);
+        CHECK(relative_difference(other[n].value, factor * one[n].value) < 1e-6);
+        // Of the size of 1e-6 of f, and not of rounding.
+        CHECK(other[n].error < 1e-3 * factor);
+        CHECK(other[n].error > 1e-17 * factor);
       }
     }
   }
@@ -272,8 +211,7 @@ TEST_CASE("transient: expectations turn with the start") {
   const std::vector<double> time{0.2, 1};
   for (const auto& [level, v] : {std::pair{3, 0.0}, {-2, 0.5}}) {
     const auto at = [&, level = level, v = v](const char* name, int sign) {
-      return expectation(s, observable(name), {sign * level, sign * v}, time,
-                         TransientMethod::krylov, 1e-8);
+      return expectation(s, observable(name), {sign * level, sign * v}, time, 1e-8);
     };
     const auto odd = at("v", 1), turned = at("v", -1), even = at("x*v", 1), same = at("x*v", -1);
     for (std::size_t n = 0; n < time.size(); ++n) {
@@ -307,34 +245,10 @@ TEST_CASE("transient: upwind equals dense exponentials on the whole grid", "[par
     for (int i : {-4, -3, -1, 0, 1, 2, 3}) {
       for (int j : {-5, 0, 2}) {
         if (i == 0 && j == 0) continue;
-        const auto u = expectation(s, f, {i, j * spacing}, time, TransientMethod::krylov, 1e-9);
+        const auto u = expectation(s, f, {i, j * spacing}, time, 1e-9);
         for (std::size_t n = 0; n < time.size(); ++n) {
           INFO("mu_d " << mu_d << " level " << i << " node " << j << " time " << time[n]);
           CHECK(std::abs(u[n].value - known[n][grid.index(i, j)]) < 1e-7);
-        }
-      }
-    }
-  }
-}
-
-// Point values on hp elements are rough: smooth functions, and starts at rest or beyond.
-TEST_CASE("transient: time steps and reduced models give the same expectations", "[slow]") {
-  const std::vector<double> time{0.01, 0.3, 1, 5};
-  struct Case {
-    test::Discrete d;
-    std::vector<Start> from;
-  };
-  for (const auto& c :
-       {Case{small_hp(), {{1, 0}, {3, 0}}}, Case{small_upwind(), {{-3, 0}, {-2, -0.5}}}}) {
-    Solved s(c.d);
-    for (const auto& start : c.from) {
-      for (const char* text : {"v", "v^2"}) {
-        const auto f = observable(text);
-        const auto one = expectation(s, f, start, time, TransientMethod::krylov, 1e-8);
-        const auto other = expectation(s, f, start, time, TransientMethod::stepping, 1e-6);
-        for (std::size_t n = 0; n < time.size(); ++n) {
-          INFO(text << " from " << start.level << ", " << start.v << " at " << time[n]);
-          CHECK(std::abs(one[n].value - other[n].value) < 1e-6);
         }
       }
     }

@@ -32,7 +32,6 @@ enum class Scheme { hp, upwind, none };
 enum class Factors { own, elements, in_memory, on_disk, incomplete };
 
 /// How functions of time are computed.
-enum class TransientSolver { krylov, stepping };
 
 /// How the spectrum is computed.
 enum class SpectrumSolver { krylov, direct };
@@ -119,7 +118,6 @@ struct Method {
   double noise_grading = 2;                     ///< hp
   Factors factors = Factors::own;
   SpectrumSolver spectrum_solver = SpectrumSolver::krylov;
-  TransientSolver transient_solver = TransientSolver::krylov;
   double excursions = 1e6;  ///< of -route monte_carlo, at most
   std::uint64_t seed = 1;   ///< of whatever is simulated
 

@@ -21,7 +21,7 @@ inline constexpr Entry kAutocorrelation{.quantity = Quantity::autocorrelation,
                                         .synonyms = "acf, vacf, correlation, autocovariance",
                                         .title = "autocovariance of the velocity",
                                         .routes = {Route::excursion, Route::monte_carlo},
-                                        .options = "time, transient_solver",
+                                        .options = "time",
                                         .rows = kAutocorrelationRows};
 
 }  // namespace stickslip::catalogue

@@ -33,7 +33,7 @@ inline constexpr Entry kDurationDensity{
     .synonyms = "durations, survival, duration_distribution",
     .title = "probability densities and distribution functions of the durations",
     .routes = {Route::excursion, Route::monte_carlo},
-    .options = "time, transient_solver",
+    .options = "time",
     .others = "f_slide, cdf_slide, f_stick, cdf_stick",
     .rows = kDurationDensityRows,
     .degrees_besides = 3,

@@ -29,7 +29,7 @@ inline constexpr Entry kExpectation{.quantity = Quantity::expectation,
                                     .title =
                                         "expectations from -start (backward Kolmogorov equation)",
                                     .routes = {Route::excursion, Route::monte_carlo},
-                                    .options = "observable, time, start, transient_solver",
+                                    .options = "observable, time, start",
                                     .rows = kExpectationRows};
 
 }  // namespace stickslip::catalogue

@@ -47,7 +47,7 @@ inline constexpr Entry kPhaseDurations{
     .synonyms = "slide_durations, sliding_durations, stick_durations, sticking_durations",
     .title = "duration_density of sliding and sticking phases alone, at about half the cost",
     .routes = {Route::excursion, Route::monte_carlo},
-    .options = "time, transient_solver",
+    .options = "time",
     .rows = kPhaseDurationsRows,
     .degrees_besides = 3,
     .of_phases = true};

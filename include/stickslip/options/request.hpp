@@ -17,7 +17,6 @@ using cases::Method;
 using cases::Question;
 using cases::Scheme;
 using cases::SpectrumSolver;
-using cases::TransientSolver;
 using catalogue::Quantity;
 using catalogue::Route;
 

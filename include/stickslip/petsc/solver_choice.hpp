@@ -28,6 +28,5 @@ void print_linear_solver_options(const std::string& prefix);
 /// before any work. Collective on PETSC_COMM_SELF only.
 void probe_linear_solver(const std::string& prefix);
 void probe_eigensolver(const std::string& prefix);
-void probe_time_stepper(const std::string& prefix);
 
 }  // namespace stickslip::petsc

@@ -14,13 +14,6 @@
 
 namespace stickslip::quantities {
 
-/// Prefix of the PETSc options of the time stepper.
-inline const std::string kBackwardPrefix = "backward_";
-
-/// Reduced models for all times at once, or the backward Kolmogorov equation step by step (PETSc's
-/// TS), which shares nothing with them but L.
-enum class TransientMethod { krylov, stepping };
-
 /// That of functionals which this start makes: from one state, the path without jumps has kinks.
 [[nodiscard]] ReducedModel::Nature nature_of(const model::Start& start);
 /// u -> E[u(Z_0)] for functions on an operator that keeps the static states. Collective.
@@ -35,7 +28,6 @@ enum class TransientMethod { krylov, stepping };
 [[nodiscard]] std::vector<Uncertain> autocorrelation(operators::Systems& systems,
                                                      const StationaryDistribution& distribution,
                                                      const std::vector<double>& time,
-                                                     TransientMethod method,
                                                      const ModelTolerance& tolerance);
 
 /// E[f(Z_t)] = mean of exp(L t) f over the start, with symmetry by its even and odd parts, and
@@ -48,7 +40,7 @@ struct Expectation {
 [[nodiscard]] Expectation expectation(operators::Systems& systems,
                                       const StationaryDistribution& distribution,
                                       const model::Observable& f, const model::Start& start,
-                                      const std::vector<double>& time, TransientMethod method,
+                                      const std::vector<double>& time,
                                       const ModelTolerance& tolerance);
 
 }  // namespace stickslip::quantities
