@@ -296,9 +296,9 @@ FourierInversion::Integrals FourierInversion::integrals(const Sum& sum, double x
 
 // By Vaaler's function H of exponential type 2 pi, |sgn - H| <= (sin(pi x)/(pi x))^2, in units of
 // 2 pi/K (Bulletin of the AMS 12, 1985, 183): the error is as much of f as lies within about 2/K.
-FourierInversion::Value FourierInversion::bounds(double x) const {
+Uncertain FourierInversion::bounds(double x) const {
   const double highest = panels_.back().high;
-  Value found{mass_ / 2, 0};
+  Uncertain found{mass_ / 2, 0};
   over_panels(panels_.size(), x, [&](double k, Complex weight) {
     const Complex seen = sampled(k) * weight;
     const double t = k / highest;
@@ -322,14 +322,14 @@ double FourierInversion::beyond(double x) const {
   return sum;
 }
 
-FourierInversion::Value FourierInversion::between(double x, double Integrals::*which) const {
+Uncertain FourierInversion::between(double x, double Integrals::*which) const {
   const auto of = [&](std::size_t n) { return integrals(sums_[n], x).*which; };
   double value = of(sums_.size() - 1);
   double error = std::abs(value - (sums_.size() > 1 ? of(sums_.size() - 2) : mass_));
   if (which == &Integrals::below) {
     // A step is off by half of its height.
     error += (std::min(further_, 2 * left_) + beyond(x)) / kPi;
-    const Value proven = bounds(x);
+    const Uncertain proven = bounds(x);
     value = std::clamp(value, proven.value - proven.error, proven.value + proven.error);
     const double bound = std::abs(value - proven.value) + proven.error;
     error = std::min(is_resolved() ? error : kUnresolved * error, bound);
@@ -347,9 +347,9 @@ FourierInversion::Value FourierInversion::between(double x, double Integrals::*w
   return {value, error};
 }
 
-FourierInversion::Value FourierInversion::below(double x) const {
+Uncertain FourierInversion::below(double x) const {
   if (!even_ || x <= 0) return between(x, &Integrals::below);
-  const Value beyond = between(-x, &Integrals::below);
+  const Uncertain beyond = between(-x, &Integrals::below);
   return {mass_ - beyond.value, beyond.error};
 }
 

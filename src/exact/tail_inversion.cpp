@@ -73,7 +73,7 @@ double TailInversion::doubt(double d, bool density) const {
   return all;
 }
 
-TailInversion::Value TailInversion::with_error(double d, bool density) const {
+Uncertain TailInversion::with_error(double d, bool density) const {
   const double value = sum(d, density, 1, 1);
   return {value, aliased(d, density, value) + std::abs(value - sum(d, density, 1, kShorter)) +
                      doubt(d, density)};

@@ -134,8 +134,7 @@ class Distribution {
       if (at_most < kTail) return tail(-1).density(d);
       if (1 - at_most < kTail) return even_ ? tail(-1).density(-d) : tail(1).density(d);
     }
-    const auto found = inversion_->density(d - centre_);
-    return {found.value, found.error};
+    return inversion_->density(d - centre_);
   }
   // P(x <= d), or P(x < d).
   [[nodiscard]] Uncertain below(double d, bool or_at, Tails which) {

@@ -77,7 +77,7 @@ Uncertain DisplacementTail::by(Weight& weight, double d, OfInversion of) {
   }
   const auto found = (*weight.inversion.*of)(d);
   const Uncertain size{1, weight.doubt};
-  return std::exp(weight.log_size - weight.s * d) * (size * Uncertain{found.value, found.error});
+  return std::exp(weight.log_size - weight.s * d) * (size * found);
 }
 
 Uncertain DisplacementTail::at(double d, OfInversion of) {

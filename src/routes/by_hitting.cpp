@@ -12,6 +12,7 @@ namespace {
 
 using operators::StaticPhase;
 using operators::Symmetry;
+using quantities::scalar;
 using quantities::Uncertain;
 
 /// Means by the levels from which excursions start.

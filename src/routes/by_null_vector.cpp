@@ -16,6 +16,7 @@ namespace {
 using operators::KolmogorovOperator;
 using operators::Symmetry;
 using petsc::check;
+using quantities::scalar;
 using quantities::Uncertain;
 
 // Prefix of the PETSc options of this eigensolver.

@@ -17,7 +17,7 @@ using Samples = std::span<const Sample>;
 double gap(double d, double e, double q) { return std::pow(d, q) - std::pow(e, q); }
 
 // Through all samples, with as many powers as that takes; the error is that of the samples.
-Limit through(Samples samples, double first_power, double step) {
+Uncertain through(Samples samples, double first_power, double step) {
   const int n = static_cast<int>(samples.size());
   // Weights w with sum w = 1 and sum w delta^p = 0.
   algebra::Matrix<double> conditions(n, n);
@@ -29,7 +29,7 @@ Limit through(Samples samples, double first_power, double step) {
     for (int m = 1; m < n; ++m) conditions(m, s) = std::pow(d, first_power + (m - 1) * step);
   }
   algebra::LuFactors(std::move(conditions)).solve(weights, false);
-  Limit limit{0, 0};
+  Uncertain limit{0, 0};
   for (int s = 0; s < n; ++s) {
     limit.value += weights[s] * samples[s].value;
     limit.error += std::abs(weights[s]) * samples[s].error;
@@ -39,10 +39,10 @@ Limit through(Samples samples, double first_power, double step) {
 
 // Through as many of the last samples as make the error smallest. It compares with the limit
 // without the last sample and, if `shorter`, with the one of a power less.
-Limit best_through(Samples samples, double first_power, double step, bool shorter) {
-  Limit best{kNone, kNone};
+Uncertain best_through(Samples samples, double first_power, double step, bool shorter) {
+  Uncertain best{kNone, kNone};
   for (std::size_t n = 2; n < samples.size(); ++n) {
-    const Limit now = through(samples.last(n), first_power, step);
+    const Uncertain now = through(samples.last(n), first_power, step);
     const auto distance = [&](Samples others) {
       return std::abs(now.value - through(others, first_power, step).value);
     };
@@ -53,7 +53,7 @@ Limit best_through(Samples samples, double first_power, double step, bool shorte
   return best;
 }
 
-Limit by_observed_order(Samples samples, double order) {
+Uncertain by_observed_order(Samples samples, double order) {
   const auto from_two = [](const Sample& b, const Sample& c, double q) {
     return c.value - (b.value - c.value) * std::pow(c.at, q) / gap(b.at, c.at, q);
   };
@@ -83,7 +83,7 @@ double observed_order(Samples samples) {
   return root.first;
 }
 
-Limit limit_of(Samples samples, double order, bool grazing) {
+Uncertain limit_of(Samples samples, double order, bool grazing) {
   if (std::isnan(order)) return {kNone, kNone};
   double first_power = 1;
   if (grazing) first_power = order < 1.75 ? 1.5 : 2;
@@ -91,8 +91,8 @@ Limit limit_of(Samples samples, double order, bool grazing) {
   return best_through(samples, first_power, grazing ? 0.5 : 1, false);
 }
 
-Limit limit_in_half_powers(Samples samples) {
-  const Limit none{kNone, kNone};
+Uncertain limit_in_half_powers(Samples samples) {
+  const Uncertain none{kNone, kNone};
   if (samples.size() < 3) return none;
   const Samples last = samples.last(3);
   const double before = std::abs(last[1].value - last[0].value),

@@ -20,7 +20,7 @@ struct Series {
   double accuracy = 0;
   std::vector<double> values = {};
   std::vector<cases::Case> cases = {};
-  std::function<Limit(std::span<const Sample>, double)> limit = {};
+  std::function<Uncertain(std::span<const Sample>, double)> limit = {};
 };
 
 /// Of delta, with mu_s at the same place between the levels.
@@ -107,7 +107,7 @@ Table table_of_limits(const Series& series, const std::string& key, const std::v
     }
     samples.push_back({at, found->value[0], found->error[0]});
     const double order = observed_order(samples);
-    const Limit limit = series.limit(samples, order);
+    const Uncertain limit = series.limit(samples, order);
     table.rows.push_back({at, found->value[0], found->error[0], order, limit.value, limit.error});
   }
   return table;

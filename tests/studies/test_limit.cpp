@@ -24,7 +24,7 @@ TEST_CASE("limit: powers of delta are removed one after the other") {
   const auto smooth = samples_of([](double d) { return std::exp(d); }, 6);
   const double order = observed_order(smooth);
   CHECK(order == Approx(1).margin(0.05));
-  const Limit limit = limit_of(smooth, order, false);
+  const auto limit = limit_of(smooth, order, false);
   CHECK(std::abs(limit.value - 1) < 1e-9);
   CHECK(std::abs(limit.value - 1) <= limit.error);
   CHECK(limit.error < 1e-7);
@@ -34,18 +34,18 @@ TEST_CASE("limit: half powers for mu_d = mu_s") {
   const auto grazing =
       samples_of([](double d) { return 2 + std::pow(d, 1.5) * (1 - std::sqrt(d)); }, 6);
   const double order = observed_order(grazing);
-  const Limit limit = limit_of(grazing, order, true);
+  const auto limit = limit_of(grazing, order, true);
   CHECK(std::abs(limit.value - 2) <= limit.error);
   CHECK(limit.error < 1e-10);
   const auto second = samples_of([](double d) { return 2 + d * d * std::exp(std::sqrt(d)); }, 6);
-  const Limit other = limit_of(second, observed_order(second), true);
+  const auto other = limit_of(second, observed_order(second), true);
   CHECK(std::abs(other.value - 2) <= other.error);
   CHECK(other.error < 1e-6);
 }
 
 TEST_CASE("limit: an unexpected order stands for itself, and none gives no limit") {
   const auto cubic = samples_of([](double d) { return 1 + d * d * d; }, 5);
-  const Limit limit = limit_of(cubic, observed_order(cubic), false);
+  const auto limit = limit_of(cubic, observed_order(cubic), false);
   CHECK(limit.value == Approx(1).epsilon(1e-10));
   const auto uneven = samples_of([](double d) { return std::cos(60 / d); }, 3);
   CHECK(std::isnan(observed_order(uneven)));
@@ -56,7 +56,7 @@ TEST_CASE("limit: an unexpected order stands for itself, and none gives no limit
 // On a straight line, two samples at delta and delta/2 extrapolate to 2 v(delta/2) - v(delta).
 TEST_CASE("limit: errors of the samples count by the size of their weights") {
   const std::vector<Sample> line{{0.5, 1.5, 1e-3}, {0.25, 1.25, 1e-3}, {0.125, 1.125, 2e-3}};
-  const Limit limit = limit_of(line, 1, false);
+  const auto limit = limit_of(line, 1, false);
   CHECK(limit.value == Approx(1).epsilon(1e-12));
   CHECK(limit.error == Approx(2 * 2e-3 + 1e-3).epsilon(1e-9));
 }
@@ -64,7 +64,7 @@ TEST_CASE("limit: errors of the samples count by the size of their weights") {
 // Two samples at delta and delta/2, and the two before: 1 + delta + delta^2.
 TEST_CASE("limit: the error holds the change that the last sample makes") {
   const std::vector<Sample> curve{{0.5, 1.75, 0}, {0.25, 1.3125, 0}, {0.125, 1.140625, 0}};
-  const Limit limit = limit_of(curve, 1, false);
+  const auto limit = limit_of(curve, 1, false);
   const double now = 2 * 1.140625 - 1.3125, before = 2 * 1.3125 - 1.75;
   CHECK(limit.value == Approx(now).epsilon(1e-12));
   CHECK(limit.error == Approx(now - before).epsilon(1e-12));
@@ -72,9 +72,9 @@ TEST_CASE("limit: the error holds the change that the last sample makes") {
 
 TEST_CASE("limit: by an observed order, the error is the change from one limit to the next") {
   const auto samples = samples_of([](double d) { return 1 + d * d * d * (1 + d); }, 5);
-  const Limit limit = limit_of(samples, observed_order(samples), false);
+  const auto limit = limit_of(samples, observed_order(samples), false);
   const auto shorter = std::span(samples).first(4);
-  const Limit before = limit_of(shorter, observed_order(shorter), false);
+  const auto before = limit_of(shorter, observed_order(shorter), false);
   CHECK(std::abs(limit.value - 1) < 1e-5);
   CHECK(limit.error == Approx(std::abs(limit.value - before.value)).epsilon(1e-12));
   CHECK(limit.error > std::abs(limit.value - 1));
@@ -106,7 +106,7 @@ TEST_CASE("limit: half powers of tau, whichever of them are there") {
       const double tau = std::pow(4.0, -n - 1);
       falling.push_back({tau, value(tau), 1e-14});
     }
-    const Limit limit = limit_in_half_powers(falling);
+    const auto limit = limit_in_half_powers(falling);
     CHECK(std::abs(limit.value - 1) <= limit.error);
     CHECK(limit.error < 1e-4);
   }
@@ -115,7 +115,7 @@ TEST_CASE("limit: half powers of tau, whichever of them are there") {
 // Through 1/4, 1/16 and their values, u + C tau^(1/2) is 2 v(1/16) - v(1/4).
 TEST_CASE("limit: in half powers, the error holds the change that the last power makes") {
   const std::vector<Sample> curve{{1, 4, 0}, {0.25, 2, 0}, {0.0625, 1.25, 0}};
-  const Limit limit = limit_in_half_powers(curve);
+  const auto limit = limit_in_half_powers(curve);
   CHECK(limit.value == Approx(2 * 1.25 - 2).epsilon(1e-12));
   // Without the last sample it is 0, without the last power 1.25.
   CHECK(limit.error == Approx(0.75).epsilon(1e-12));

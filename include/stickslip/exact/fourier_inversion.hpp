@@ -6,6 +6,8 @@
 #include <map>
 #include <vector>
 
+#include "stickslip/support/uncertain.hpp"
+
 namespace stickslip::exact {
 
 /// f with phi(k) = int f(x) exp(i k x) dx, of a mass that need not be 1 and with a singularity at
@@ -31,9 +33,6 @@ namespace stickslip::exact {
 /// and what the coefficients do not foresee of larger k, where f near 0 has a smaller scale. Local.
 class FourierInversion {
  public:
-  struct Value {
-    double value = 0, error = 0;
-  };
   struct Transformed {
     std::complex<double> value;
     double error = 0;  ///< of the modulus
@@ -52,9 +51,9 @@ class FourierInversion {
                    const Limits& limits);
 
   /// f(x), x not 0. O(highest |x|).
-  [[nodiscard]] Value density(double x) const { return between(x, &Integrals::density); }
+  [[nodiscard]] Uncertain density(double x) const { return between(x, &Integrals::density); }
   /// int f from -infinity to x. O(highest |x|).
-  [[nodiscard]] Value below(double x) const;
+  [[nodiscard]] Uncertain below(double x) const;
   /// Whether little enough is left of phi. Otherwise what follows from it says less of errors.
   [[nodiscard]] bool is_resolved() const;
   /// How often phi has been asked for.
@@ -95,13 +94,13 @@ class FourierInversion {
   void over_panels(std::size_t panels, double x, const Add& add) const;
   [[nodiscard]] Integrals integrals(const Sum& sum, double x) const;
   // int f up to x within an error that holds for whatever f >= 0 has the phi known.
-  [[nodiscard]] Value bounds(double x) const;
+  [[nodiscard]] Uncertain bounds(double x) const;
   void find_what_is_left(std::size_t first);  // on panels from that on, the last octave
   [[nodiscard]] Integrals singular(const Sum& sum, double x) const;
   // How far off int phi dk/k beyond the largest k may be: the terms foresee the next octave but for
   // so much, each further one by half of that more, and phi falls like k^(-1/2) at least.
   [[nodiscard]] double beyond(double x) const;
-  [[nodiscard]] Value between(double x, double Integrals::*which) const;
+  [[nodiscard]] Uncertain between(double x, double Integrals::*which) const;
 
   bool even_;
   double mass_, mean_, scale_, accuracy_;

@@ -22,7 +22,6 @@ namespace stickslip::exact {
 /// show, the changes by a range of two thirds, and those of phi. Local.
 class TailInversion {
  public:
-  using Value = FourierInversion::Value;
   using Transformed = FourierInversion::Transformed;
 
   /// Takes mean and standard deviation of the weighted density; `accuracy` is relative, `most` the
@@ -31,9 +30,9 @@ class TailInversion {
                 double accuracy, int most);
 
   /// exp(s d) P(d)/m. O(wavenumbers).
-  [[nodiscard]] Value beyond(double d) const { return with_error(d, false); }
+  [[nodiscard]] Uncertain beyond(double d) const { return with_error(d, false); }
   /// exp(s d) f(d)/m. O(wavenumbers).
-  [[nodiscard]] Value density(double d) const { return with_error(d, true); }
+  [[nodiscard]] Uncertain density(double d) const { return with_error(d, true); }
   [[nodiscard]] int evaluations() const { return static_cast<int>(known_.size()); }
 
  private:
@@ -46,7 +45,7 @@ class TailInversion {
   [[nodiscard]] double aliased(double d, bool density, double value) const;
   // By errors of phi.
   [[nodiscard]] double doubt(double d, bool density) const;
-  [[nodiscard]] Value with_error(double d, bool density) const;
+  [[nodiscard]] Uncertain with_error(double d, bool density) const;
   void sample(const FourierInversion::Transform& phi);
 
   double s_, step_;

@@ -46,7 +46,7 @@ class DisplacementTail {
     std::unique_ptr<DisplacementModel> model = {};
     std::optional<exact::TailInversion> inversion = {};
   };
-  using OfInversion = exact::TailInversion::Value (exact::TailInversion::*)(double) const;
+  using OfInversion = Uncertain (exact::TailInversion::*)(double) const;
 
   bool add_weight();  // false where all has been reached
   [[nodiscard]] exact::FourierInversion::Transformed transform(const Weight& of, double k) const;

@@ -1,40 +1,17 @@
 #pragma once
-/// Numbers that carry a bound for their error through arithmetic.
+/// Values of solutions with their errors, and how results are made of them.
 
-#include <cmath>
-#include <limits>
+#include <utility>
+#include <vector>
 
 #include "stickslip/petsc/factorization.hpp"
 #include "stickslip/quantities/results.hpp"
+#include "stickslip/support/uncertain.hpp"
 
 namespace stickslip::quantities {
 
-/// value with |error| to first order: bounds add, as worst cases do.
-struct Uncertain {
-  double value = 0;
-  double error = 0;
-};
-
-/// Of an entry without a value (Result::unreached).
-inline constexpr Uncertain kNoValue{std::numeric_limits<double>::quiet_NaN(),
-                                    std::numeric_limits<double>::quiet_NaN()};
-
-[[nodiscard]] inline Uncertain operator+(Uncertain a, Uncertain b) {
-  return {a.value + b.value, a.error + b.error};
-}
-[[nodiscard]] inline Uncertain operator-(Uncertain a, Uncertain b) {
-  return {a.value - b.value, a.error + b.error};
-}
-[[nodiscard]] inline Uncertain operator*(Uncertain a, Uncertain b) {
-  return {a.value * b.value, std::abs(a.value) * b.error + std::abs(b.value) * a.error};
-}
-[[nodiscard]] inline Uncertain operator/(Uncertain a, Uncertain b) {
-  const double q = a.value / b.value;
-  return {q, (a.error + std::abs(q) * b.error) / std::abs(b.value)};
-}
-[[nodiscard]] inline Uncertain operator*(double factor, Uncertain a) {
-  return {factor * a.value, std::abs(factor) * a.error};
-}
+using stickslip::kNoValue;
+using stickslip::Uncertain;
 
 /// functional . solution, with the effect of iterative refinement as its rounding. Collective.
 [[nodiscard]] Uncertain value_of(Vec functional, const petsc::Solution& solution);
