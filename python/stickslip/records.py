@@ -314,6 +314,9 @@ def _time_column(columns: Sequence[Column], wanted: int | str | None) -> Column 
         return _named(columns, wanted, "time")
     if any(column.step or column.times is not None for column in columns):
         return None
+    if any(re.match("period|freq", column.name, re.IGNORECASE) for column in columns[:1]):
+        raise ValueError(f"{columns[0].name}: a spectrum is no force or acceleration over time; take another file, or give "
+                         "time= or step=")
     rising = [column for column in columns if (numpy.diff(column.values) > 0).all()]
     for column in (*rising, *columns):
         if column.name.lower() in NAMES_OF_TIME or column in rising and kind_of(column.unit) == "time":

@@ -19,7 +19,7 @@ OTHERS = ("n", "kn", "mn", "un", "nn", "pn", "lbf", "kgf", "pa", "kpa", "mpa", "
 _WORDS = (("milliseconds?|millisec|millis|msecs?", "ms"), ("microseconds?|microsec|micros|usecs?", "us"),
           ("nanoseconds?|nanosec|nsecs?", "ns"), ("seconds?|secs?|sekunden?|secondes?|segundos?|secondi", "s"),
           ("minutes?|mins?|minuten", "min"), ("hours?|hrs?|stunden?|heures?", "h"), ("days?|tage?|jours?", "d"),
-          ("centimet(?:er|re)s?", "cm"), ("millimet(?:er|re)s?", "mm"), ("micromet(?:er|re)s?|microns?", "um"),
+          ("centimet(?:er|re)s?|cms", "cm"), ("millimet(?:er|re)s?", "mm"), ("micromet(?:er|re)s?|microns?", "um"),
           ("nanomet(?:er|re)s?", "nm"), ("kilomet(?:er|re)s?", "km"), ("met(?:er|re)s?", "m"), ("feet|foot", "ft"),
           ("inch(?:es)?", "in"), ("milli-?g", "mg"), ("micro-?g", "ug"), ("milli-?gals?", "mgal"), ("gals", "gal"),
           ("kilonewtons?", "kn"), ("millinewtons?", "mn"), ("newtons?", "n"), ("m(?:illi)?volts?", "mv"), ("volts?", "v"),

@@ -237,9 +237,11 @@ class Descriptions(Case):
 
     def cosmos(self, values=VALUE, step=20.0, text=13, counts=(100, 100), form=("5F15.6", "15.6f", 5),
                samples=("8F10.5", "10.5f", 8),
-               seconds=0, what="acceleration", unit="cm/sec2(04)", direction="90 Deg", recorder=-999.0, duration=-999.0):
+               seconds=0, what="acceleration", unit="cm/sec2(04)", direction="90 Deg", recorder=-999.0, duration=-999.0,
+               facts=None):
         real = numpy.full(counts[1], -999.0)
-        real[[33, 61, 62]] = recorder, step, duration
+        for place, value in {33: recorder, 61: step, 62: duration, **(facts or {})}.items():
+            real[place] = value
         words = [f"Corrected acceleration    (Format v01.20 with {text:2d} text lines)", *["words, 1 to 2 of 3"] * (text - 1)]
         words[8] = f"Sta Chan   1: {direction} (Rcrdr Chan  1) Location: Roof" if direction else words[8]
         integers = fixed([-999] * counts[0], "8d", 10)
@@ -260,6 +262,12 @@ class Descriptions(Case):
         self.same(self.read(self.cosmos(numpy.round(1e6 * VALUE), samples=("10I8", "8.0f", 10), what="raw accel.  ",
                                         unit="counts (50)"),
                             "c.V0c"), "counts", 1e6)
+        raw = {"samples": ("10I8", "8.0f", 10), "what": "raw accel.  ", "unit": "counts (50)"}
+        for facts, factor in (((0.298, 1.25, -999), 1), ((0.5, 2.5, 4), 0.5 / 2.5 / 4 / 0.298 * 1.25)):
+            text = self.cosmos(numpy.round(1e6 * VALUE), facts=dict(zip((21, 41, 46), facts)), **raw)
+            record = self.read(text, "c.V0c")
+            self.same(record, "m/s^2", 0.298 / 1.25 * G * factor)
+            self.assertRegex(" ".join(record.notes), f"counts became g: times {facts[0]} uV over {facts[1]} V/g")
         self.same(self.read(self.cosmos(step=-999.0, recorder=0.02), "d.v2"), "m/s^2", 0.01, within=1e-7)
         two = self.cosmos() + self.cosmos(-VALUE, direction="Up")
         self.refused(r"2 columns of values; take one of 0 \(Chan 1: 90 Deg\), 1 \(Chan 1: Up\)", two, "e.v2")
@@ -313,6 +321,20 @@ class Descriptions(Case):
                                                                                                        8) + "/& ---\n"
         self.same(self.read(new, "a.V1"), "m/s^2", G)
         time = 99.96 + TIME  # seven characters without a blank
+        caltech = ("FILE     0 OF UNCORRECTED ACCELEROGRAM DATA OF VOLUME I:\nwords   21\nCOMP S05W    9\n"
+                   "NO. OF POINTS =      8      DURATION =    .160 SEC\nUNITS ARE SEC AND G/10    22\n" + fixed([1] * 100, "5d", 16)
+                   + fixed([2.5] * 50, "10.3f", 8))
+        record = self.read(caltech + fixed(numpy.column_stack([TIME, VALUE]).ravel(), "8.3f", 10), "c.e0a")
+        self.same(record, "m/s^2", G / 10, within=1e-3 * G)
+        self.assertIn("column S05W", record.source)
+        rounded = fixed(numpy.column_stack([[0, 0.02, 0.02, *TIME[3:]], VALUE]).ravel(), "8.3f", 10)
+        record = self.read(caltech + rounded, "d.e0a")
+        self.same(record, "m/s^2", G / 10, numpy.delete(TIME, 2), numpy.delete(VALUE, 2), 1e-3 * G)
+        self.assertIn("1 samples at the times of others, which are rounded, were left out", record.notes)
+        second = ("CORRECTED ACCELEROGRAM  IIB 87.420.0 COMP S05W\n" + caltech + "PEAK ACCELERATION =   2.25 CMS/SEC/SEC AT .1 SEC.\n"
+                  "     8 POINTS OF ACC DATA EQUALLY SPACED AT   .020 SEC.\n" + fixed(VALUE, "10.4f", 8)
+                  + "     8 POINTS OF VEL DATA EQUALLY SPACED AT   .020 SEC.\n" + fixed(7 * VALUE, "10.4f", 8))
+        self.same(self.read(second, "e.s0a"), "m/s^2", 0.01)
         pairs = fixed(numpy.column_stack([time, 10 * VALUE]).ravel(), "7.3f", 10)
         old = head.format(8).upper() + "UNITS OF UNCOR ACCEL ARE SEC AND G/10.   MAX = 1 G\n" + numbers + pairs + "/& ---\n"
         self.same(self.read(old, "b.RAW"), "m/s^2", G, time=time, within=1e-3 * G)
@@ -368,6 +390,11 @@ class Descriptions(Case):
         self.assertIn("column 360", record.source)
         pairs = numpy.column_stack([TIME, VALUE]).ravel()
         self.same(self.read(self.smc(pairs, "1 UNCORRECTED ACCELEROGRAM", 1.7e38, 11), "b.smc"), "m/s^2", 0.01, within=1e-7)
+        remains = "\0" * 40 + "\r\n" + fixed([9.75, -1] * 4, "10.4f", 8)
+        long = numpy.tile(VALUE, 4000)
+        self.same(self.read(self.smc(long) + remains, "e.smc"), "m/s^2", 0.01, 0.02 * numpy.arange(len(long)), long, 1e-7)
+        self.same(self.read(self.smc(VALUE, "0 UNKNOWN"), "f.smc", unit="gal"), "m/s^2", 0.01, within=1e-7)
+        self.refused("is a spectrum", self.smc(VALUE, "5 RESPONSE"), "g.smc")
         self.refused("holds 7 of the 8 samples", self.smc(VALUE).replace(" 6.2500E-2", ""), "c.smc")
         self.refused("360: is a velocity, no force or acceleration; differentiate=True", self.smc(VALUE, "3 VELOCITY"), "d.smc")
 
@@ -390,9 +417,24 @@ class Descriptions(Case):
                      self.knet(rate="50Hz", counts=many).replace("Time(s)  10", "Time(s)  99"), "b.EW")
         self.refused('no whole file of K-NET or KiK-net, which has a line "Scale Factor"',
                      self.knet().replace("Scale Factor", "Scale"), "c.EW")
-        csv = "#Sampling Freq(Hz),50\n#Time,NS(gal),EW(gal),UD(gal)\n" + "".join(
-            f"2001/01/01 23:59:59.{round(900 + 20 * n):03d},{v},{-v},{2 * v}\n" for n, v in enumerate(VALUE[:5]))
-        self.same(self.read(csv, "d.csv", channel="EW"), "m/s^2", -0.01, TIME[:5], VALUE[:5])
+
+    def test_csv_of_knet(self):
+        """As the agency writes it, a value below its key, and in a short form; the samples have an offset there, too."""
+        way = ("N-S", "E-W", "U-D")
+        for names, head, clock in (
+                (way, "#K-NET CSV\n#Event\n#OriginTime,Latitude\n#2019/01/02 17:47:00,36.708\n#Record\n#SamplingFrequency(Hz)\n"
+                 "#50\n#DurationTime(s)\n#1\n#Offset\n#N-S(gal),E-W(gal),U-D(gal)\n#-18.60,-1.40,26.10\n"
+                 "#Time,RelativeTime(s),N-S(gal),E-W(gal),U-D(gal)\n", ",{:.2f}"),
+                (range(1, 7), "#K-NET CSV\n#SamplingFrequency(Hz)\n#50\n#Time,RelativeTime(s),1(gal),2(gal),3(gal),4(gal),5(gal),"
+                 "6(gal)\n", ",{:.2f}"),
+                (way, "#Sampling Freq(Hz),50\n#Time,N-S(gal),E-W(gal),U-D(gal)\n", "")):
+            text = head + "".join(f"2001/01/01 23:59:59.{20 * n + 90:03d}{clock.format(0.02 * n)},"
+                                  + ",".join(f"{v * (n + 1) + 7}" for n in range(len(names))) + "\n" for n, v in enumerate(VALUE))
+            record = self.read(text, "a.csv", channel="E-W" if len(names) == 3 else "E-W surface")
+            self.same(record, "m/s^2", 0.02 if len(names) == 3 else 0.05, value=VALUE - VALUE.mean())
+            self.assertRegex(" ".join(record.notes), "the mean, .* gal, was taken off")
+        self.refused("does not make 7 samples last 0.14 s", text.replace("Freq(Hz),50", "Freq(Hz),100"), "b.csv", column=0)
+        self.refused('no whole file of CSV of K-NET or KiK-net, which has a line "#Sampling', text.replace("Freq", ""), "c.csv")
 
     def cwa(self, sequence="Time U(+); N(+); E(+)", form="4F10.3", unit="gal. DCoffset(corr)"):
         rows = [[t] * ("Time" in sequence) + [v, 2 * v, 3 * v] for t, v in zip(TIME, numpy.round(VALUE, 3))]
@@ -425,6 +467,16 @@ class Descriptions(Case):
                  ": 8\nSAMPLING INTERVAL (sec) : 0.02\nRAW PGA VALUES (gal)    : (N-S) 13.2 (E-W) 12.1 (U-D) 9.8\nCopyright\n"
                  "       N-S          E-W          U-D\n" + "".join(fixed([v, -v, 2 * v], "13.6f", 3) for v in VALUE))
         self.same(self.read(older, "g.txt", channel="E-W"), "m/s^2", -0.01, within=1e-9)
+
+    def test_csmnc(self):
+        head = ("065JZC120103153901\n0120103153957 2012-01-03 15:39:57 BTM\nMAGNITUDE  4.0(Ms)\nCOMP. {}\n"
+                "UNCORRECTED {}          UNIT: {}\nNO. OF POINTS:  {}  EQUALLY SPACED INTERVALS OF:  {}  SEC\n"
+                "PEAK VALUE:    2.25   AT   .1 SEC    DURATION:  1 SEC\nCSMNC\n\n")
+        for unit, wide, factor in (("CM/SEC/SEC", 8, 0.01), ("g", 5, G)):
+            text = head.format("EW", "ACCELERATION", unit, 8, "0.02") + fixed(VALUE, "14.6E", wide)
+            self.same(self.read(text, "a.dat"), "m/s^2", factor, within=1e-6)
+        self.refused("EW: is a velocity", text.replace("ACCELERATION", "VELOCITY").replace(": g", ": cm/s"), "b.dat")
+        self.refused("holds 8 of the 9 samples", text.replace("POINTS:  8", "POINTS:  9"), "c.dat")
 
     def test_geocsv_and_time_series(self):
         stamps = [f"2001-01-01T23:59:59.{900000 + 20000 * n:06d}" for n in range(5)]
@@ -462,6 +514,18 @@ class Descriptions(Case):
         self.refused("unit = g: is one of acceleration, and the file says that velocity is a velocity",
                      text("VELOCITY TIME SERIES IN UNITS OF CM/S"),
                      "b.VT2", unit="g")
+
+    def test_blank_lines_and_doubled_ends(self):
+        text = "PEER\nSomewhere, 1940\nACCELERATION TIME SERIES IN UNITS OF G\nNPTS=     8, DT=   .0200 SEC\n" + fixed(VALUE, "15.7E", 5)
+        for end in ("\r\n", "\r\r\n", "  \r\n", "\n\n"):
+            self.same(self.read(text.replace("\n", end), "a.AT2"), "m/s^2", G, within=1e-6)
+
+    def test_spectra(self):
+        first = "Response and Fourier amplitude spectra (86 periods,  .04 - 10.0 sec)   for\n"
+        self.refused("holds spectra, no force", first + self.csmip(VALUE), "a.V3")
+        for name in ("Period [s]", "period (s)", "Frequency [Hz]"):
+            self.refused("a spectrum is no force or acceleration over time", columns(head=f"{name},Sa [g]"))
+        self.same(self.read(columns(head="Period [s],a [g]"), time=0), "m/s^2", G)
 
     def test_derivatives(self):
         """Of t^2 cm/s and t^2 cm by t, with even and uneven steps: 2 t cm/s^2 and 2 cm/s^2."""
@@ -549,6 +613,20 @@ class Rows(Case):
         self.refused(r"take one of 0 \(block 0 of 2\), 1 \(block 1 of 24\)", "24 0.02\n" + text, layout="rows", step=0.02)
         self.same(self.read("24 0.02\n" + text, layout="rows", step=0.02, column=1), time=0.02 * numpy.arange(24), value=long)
         self.refused("layout = 'row': must be one of columns, rows, pairs", text, layout="row")
+
+    def test_rows_as_wide_as_those_of_other_formats(self):
+        """Five numbers of 15 characters begin a SAC file, too; as many words as numbers above the rows name no columns."""
+        long = numpy.tile(VALUE, 20)
+        rows = fixed(long, "15.7E", 5)
+        for text in (rows, "points= 160, step= 0.02 sec\n" + rows, "El Centro 1940 N-S component\n" + rows):
+            for options in ({}, {"step": 0.02}, {"step": 0.02, "column": 0}):
+                self.refused("layout", text, "a.g3", **options)
+            self.same(self.read(text, "b.g3", layout="rows", step=0.02), time=0.02 * numpy.arange(160), value=long, within=1e-6)
+
+    def test_what_cannot_be_read_says_what_can(self):
+        text = "* VOL1\nUNITS\n" + fixed(VALUE, "12.5f", 4) + "/&\n"
+        self.refused(r'no numbers in columns.*layout="rows" .* with step=, unit= and column= of 0 \(UNITS: 8\)', text)
+        self.same(self.read(text, layout="rows", step=0.02, unit="gal", column=0), "m/s^2", 0.01)
 
     def test_pairs_of_time_and_sample(self):
         text = fixed(numpy.column_stack([TIME, VALUE]).ravel(), "10.4f", 6)

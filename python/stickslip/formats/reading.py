@@ -19,6 +19,7 @@ NUMBERS = re.compile(rf"\s*{NUMBER}(?:(?:\s+|(?=[-+])){NUMBER})*\s*")  # "1.5-2.
 ONE = re.compile(NUMBER)
 TOUCHING = re.compile(r"(?<=[\d.])(?=[-+])")
 DATE = re.compile(r"\d{4}[-/]\d\d[-/]\d\d(?:[T -]\d\d:\d\d.*)?")
+FLAGS = re.IGNORECASE | re.MULTILINE
 KINDS = {"acc": "acceleration", "vel": "velocity", "dis": "displacement"}
 
 
@@ -65,7 +66,7 @@ class Format:
 
     def missing(self, words: str) -> list[str]:
         """Descriptions of the signs that are not in the lines with words."""
-        return [what for what, pattern in self.signs.items() if not re.search(pattern, words, re.IGNORECASE | re.MULTILINE)]
+        return [what for what, pattern in self.signs.items() if not re.search(pattern, words, FLAGS)]
 
 
 def numeric(line: str) -> bool:
@@ -118,6 +119,14 @@ def counted(values: "Array", count: int, what: str = "its header") -> "Array":
     if len(values) != count:
         raise ValueError(f"holds {len(values)} of the {count} samples that {what} announces")
     return values
+
+
+def pairs(name: str, values: "Array", unit: str, kind: str) -> Column:
+    """Of pairs of time [s] and value. Times are rounded in the file: of samples at one time the first one is kept."""
+    times, values = values[::2], values[1::2]
+    kept = numpy.append(True, numpy.diff(times) != 0)
+    notes = (f"{(~kept).sum()} samples at the times of others, which are rounded, were left out",) if not kept.all() else ()
+    return Column(name, values[kept], unit, times=times[kept], kind=kind, notes=notes)
 
 
 def lasting(step: float, count: int, seconds: float, within: float) -> str:

@@ -31,6 +31,7 @@ IN_BRACKETS = re.compile(r"(.*?)[\s_,/]*[\[(]([^\])]*)[\])]\s*")
 STATED = re.compile(r"(.+?)(?:\s+in\s+|\s*/\s*)(\S+)")
 BEHIND = re.compile(r"(.+?)[\s_,]+([^\s_,]+)")
 AMBIGUOUS = ("in", "d", "h", "min", "-", "1")  # are words or parts of names, too
+NO_NAME = re.compile(rf"{NUMBER}[,;]?|.*=")  # words of a sentence or of a header of facts
 NAMES_OF_TIME = ("t", "time", "times", "timestamp", "datetime", "date", "zeit", "temps", "elapsed", "clock", "tiempo", "tempo")
 GLUED = re.compile(r"(t|time|timestamp|elapsed)(s|ms|us|ns|sec|secs|msec|millis|micros|min)", re.IGNORECASE)
 
@@ -151,7 +152,7 @@ def _names(heads: Sequence[Sequence[str]], count: int) -> tuple[list[str], list[
     unnamed = [UNNAMED.format(n) for n in range(count)]
     fitting = [head for head in heads if len(head) == count]
     split = [name_and_unit(field) for field in fitting[-1]] if fitting else []
-    last = bool(fitting) and heads[-1] is fitting[-1]
+    last = bool(fitting) and heads[-1] is fitting[-1] and not any(map(NO_NAME.fullmatch, fitting[-1]))
     if last and all(re.fullmatch(r"[\[(].*[\])]", field) or is_unit(field) for field in fitting[-1]) and any(fitting[-1]):
         units = [field.strip("[]()") for field in fitting[-1]]
         if len(fitting) == 1 and any(kind_of(unit) == "time" or "/" in unit for unit in units) and count > 1:
