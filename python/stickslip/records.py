@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     Array = numpy.ndarray
 numpy = needed("numpy")
 
-COUNTS = ("index", "sample", "samples", "frame", "frames", "point", "points", "number", "no", "n", "i", "nr", "id", "row",
-          "count", "step", "timestep")  # are no times
+COUNTS = re.compile(r"(?:#|unnamed|index|samples?|frames?|points?|number|no|n|i|nr|id|row|count|step|timestep)(?![a-z]).*|",
+                    re.IGNORECASE)  # are no times
 RAW = ("counts", "count", "v", "mv", "uv")  # units of what a recorder writes
 EPOCH = 1e8    # times beyond it [s] count from a date
 ABOUT_GRAVITY = (9.7, 9.9)  # factors that make m/s^2 of g
@@ -323,8 +323,8 @@ def _time_column(columns: Sequence[Column], wanted: int | str | None) -> Column 
             return column
     if len(columns) < 2 or columns[0] not in rising:
         return None
-    if columns[0].name.lower() in COUNTS:
-        raise ValueError(f"{columns[0].name}: counts samples; give the sampling interval in seconds, as step=0.01, or time=0 "
+    if COUNTS.fullmatch(columns[0].name):
+        raise ValueError(f"{columns[0].name or 'column 0'}: counts samples; give the sampling interval in seconds, as step=0.01, or time=0 "
                          "if these are times")
     return columns[0]
 
@@ -416,6 +416,7 @@ def _record(chosen: Column, time: "Array", unit: str | None, differentiate: bool
     if factor != 1:
         notes.append(f"{given} became {standard}: times {factor:g}")
     values = factor * chosen.values
+    notes += _marks(chosen.values)
     known = numpy.isfinite(values) & numpy.isfinite(time)
     if not known.all():
         notes.append(f"{(~known).sum()} samples are no numbers and were left out")
@@ -424,6 +425,16 @@ def _record(chosen: Column, time: "Array", unit: str | None, differentiate: bool
         record = dataclasses.replace(record, value=numpy.gradient(record.value, record.time), unit="m/s^2")
     notes += [f"the {kind} was differentiated by central differences"] if differentiate else []
     return dataclasses.replace(record, notes=tuple(notes))
+
+
+def _marks(values: "Array") -> list[str]:
+    """A sentence on values that probably mark missing ones: such as 9999 or -999.25, far beyond all others."""
+    sizes = abs(values[numpy.isfinite(values)])
+    largest = sizes.max(initial=0)
+    if not re.fullmatch(r"9{3,}(\.9+|\.25)?", f"{largest:.10g}") or (sizes[sizes < largest] > largest / 10).any():
+        return []
+    return [f"{(sizes == largest).sum()} samples are {largest:g} in size, as marks of missing ones are: nan in their place leaves "
+            "them out"]
 
 
 def _findings(record: Record) -> list[str]:

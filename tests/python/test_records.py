@@ -161,6 +161,13 @@ class Text(Case):
         self.assertIn("drifts by", str(self.read("t,a\n" + "".join(f"{t:.2f},{v}\n" for t, v in zip(time, noise + time / 20)))))
         self.assertNotIn("drift", str(self.read("t,a\n" + "".join(f"{t:.2f},{v}\n" for t, v in zip(time, noise)))))
 
+    def test_marks_of_missing_values(self):
+        for mark in ("9999", "-999.25", "99999.9"):
+            marked = columns(head="t,a [g]").replace("0.1250", mark)
+            self.assertRegex(" ".join(self.read(marked).notes), f"1 samples are {mark.strip('-')} in size, as marks of missing")
+            self.assertIn("1 samples are no numbers", str(self.read(marked.replace(mark, "nan"))))
+        self.assertNotIn("marks", str(self.read(columns().replace("0.1250", "999").replace("2.2500", "-800"))))
+
     def test_uneven_steps(self):
         time = numpy.cumsum(1 + 0.3 * numpy.sin(numpy.arange(100.0)))
         record = self.read("t,a\n" + "".join(f"{t!r},{2 * t!r}\n" for t in time.tolist()))
@@ -423,7 +430,7 @@ class Descriptions(Case):
         way = ("N-S", "E-W", "U-D")
         for names, head, clock in (
                 (way, "#K-NET CSV\n#Event\n#OriginTime,Latitude\n#2019/01/02 17:47:00,36.708\n#Record\n#SamplingFrequency(Hz)\n"
-                 "#50\n#DurationTime(s)\n#1\n#Offset\n#N-S(gal),E-W(gal),U-D(gal)\n#-18.60,-1.40,26.10\n"
+                 "#50\n#DurationTime(s)\n#0\n#Offset\n#N-S(gal),E-W(gal),U-D(gal)\n#-18.60,-1.40,26.10\n"
                  "#Time,RelativeTime(s),N-S(gal),E-W(gal),U-D(gal)\n", ",{:.2f}"),
                 (range(1, 7), "#K-NET CSV\n#SamplingFrequency(Hz)\n#50\n#Time,RelativeTime(s),1(gal),2(gal),3(gal),4(gal),5(gal),"
                  "6(gal)\n", ",{:.2f}"),
@@ -486,7 +493,7 @@ class Descriptions(Case):
         geo = "# dataset: GeoCSV 2.0\n# delimiter: ,\n# field_unit: {}, m/s**2\n# field_type: datetime, float\nTime, Sample\n"
         single = ("# dataset: GeoCSV 2.0\n# SID: A_B\n# sample_count: 5\n# sample_rate_hz: 50\n# start_time: 2001-01-01T00:00:00.5Z\n"
                   "# field_unit: m/s**2\n# field_type: float\nSample\n" + "".join(f"{v}\n" for v in VALUE[:5]))
-        for text in (head.format(5, "TSPAIR", "m/s**2") + "".join(pairs),
+        for text in (head.format(5, "TSPAIR", "m/s**2") + "".join(pairs), (geo.format("ISO_8601") + comma).upper(),
                      head.format(5, "SLIST", "M/S**2") + "0.1\t-0.25\t0.5\n0.125\t-1.5\n",
                      geo.format("ISO_8601") + comma, geo.format("UTC") + comma, single,
                      head.format(2, "TSPAIR", "m/s**2") + "".join(pairs[:2]) + head.format(3, "TSPAIR",
@@ -569,6 +576,8 @@ class Times(Case):
         stamps = "timestamp,F\n" + "".join(f"{1700000000000 + 20 * n},{v}\n" for n, v in enumerate(VALUE))
         self.refused('begins at 1700000000000 without a unit; give time_unit="ms"', stamps)
         self.same(self.read(stamps, time_unit="ms"))
+        for name in ("Sample no.", "#", "", "Unnamed: 0", "index"):
+            self.refused("counts samples; give the sampling interval", columns(head=f"{name},F"))
         counts = "sample,F\n" + "".join(f"{n},{v}\n" for n, v in enumerate(VALUE))
         self.refused("sample: counts samples; give the sampling interval", counts)
         self.same(self.read(counts, step=0.02, column="F"))
@@ -584,6 +593,10 @@ class Times(Case):
         self.same(self.read("# peaks: 1 2\n# t N E\n" + body, column="N"))
         self.refused("no such column.*2 lines could name", "# t E N\n# U N E\n" + body, column="E")
         self.same(self.read("made up, twice\nTime [ms],F [N]\n" + columns()), "N", time=TIME / 1000)
+        self.same(self.read("ms,g\nTime,Acc\n" + columns()), "m/s^2", G, time=TIME / 1000)
+        self.refused("time_unit: 3 lines could name", "Time,Acc\ns,g\nms,gal\n" + columns())
+        self.same(self.read(columns(head="time_ms,acc_cm_s2")), "m/s^2", 0.01, time=TIME / 1000)
+        self.same(self.read(columns(head="t [s],a [cm/(s^2)]")), "m/s^2", 0.01)
         self.refused("no such column", "t [ms] E N\nmore of it\n" + body, column="E")
 
     def test_dates_count_from_the_first_sample(self):
@@ -667,8 +680,9 @@ class Readers(Case):
     def test_units_of_every_spelling(self):
         for spellings, factor in ((("g", "G", "g.", "g's"), G), (("milli-g", "mg"), G / 1000),
                                   (("gal", "Gals", "cm/sec2", "cm/s/s", "CM/SEC/SEC",
-                                  "cm s-2", "cm·s⁻²", "cm/s^{2}", "cm.s^-2", "centimetres per second squared"), 0.01),
-                                  (("m/s²", "m/s**2", "m / s^2", "m/sec/sec", "meters/second^2", "m s⁻²"), 1),
+                                  "cm s-2", "cm·s⁻²", "cm/s^{2}", "cm.s^-2", "centimetres per second squared", "cm/sec.^2",
+                                  "cm/(s^2)", "cm_s2", "cmss", "in gal"), 0.01),
+                                  (("m/s²", "m/s**2", "m / s^2", "m/sec/sec", "meters/second^2", "m s⁻²", "mps2", "ms2"), 1),
                                   (("ft/sec^2",), 0.3048)):
             for unit in spellings:
                 self.same(self.read(columns(), unit=unit), "m/s^2", factor)

@@ -43,7 +43,7 @@ def _read(facts: Sequence[tuple[str, str]], lines: list[str]) -> list[Column]:
     count = len(next(iter(columns.values())))
     if "count" in said:
         counted(next(iter(columns.values())), int(said["count"]))
-    doubt = ("seconds" in said and lasting(step, count, float(said["seconds"]), 1)
+    doubt = ("seconds" in said and lasting(step, count, float(said["seconds"]), 0.5 + step)
              or times is not None and lasting(step, count - 1, times[-1] - times[0], 0.01) or "")
     if "scale" in said:
         counts, unit, most = re.split(r"[()]\s*/?\s*", said["scale"])
@@ -59,8 +59,8 @@ def _csv_of_nied(lines: list[str]) -> list[Column]:
                      for key in (r"Sampling\s?Freq(?:uency)?", r"Duration\s?Time"))
     columns, step = tables.columns_of(lines, None, ",", None), 1 / float(rate[1])
     times = columns[0].values * in_si(columns[0].unit)[0]
-    doubt = lasting(step, len(times) - 1, times[-1] - times[0], 0.02) or (
-        lasting(step, len(times), float(seconds[1]), 1) if seconds else "")
+    doubt = lasting(step, len(times) - 1, times[-1] - times[0], 0.009) or (
+        lasting(step, len(times), float(seconds[1]), 0.5 + step) if seconds else "")
     return [_less_mean(column.name, column.values, column.unit, step, doubt) for column in columns
             if kind_of(column.unit) == "acceleration"]
 

@@ -51,7 +51,7 @@ def _series(lines: list[str]) -> list[Column]:
 
 
 def _geocsv(lines: list[str]) -> list[Column]:
-    heads = [n for n, line in enumerate(lines) if re.match(r"#\s*dataset\s*:", line)] + [len(lines)]
+    heads = [n for n, line in enumerate(lines) if re.match(r"#\s*dataset\s*:", line, re.IGNORECASE)] + [len(lines)]
     channels: dict[tuple[str, str], list] = {}
     for low, high in zip(heads, heads[1:]):
         comments = [line for line in lines[low:high] if line.startswith("#")]
