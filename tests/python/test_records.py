@@ -652,6 +652,12 @@ class Rows(Case):
         record = self.read(columns(head="t [s],F [N]"), rest=0.1)
         self.same(record, "N", time=0.02 * numpy.arange(13), value=numpy.append(VALUE, numpy.zeros(5)))
         self.assertIn("0.1 s of no force were appended", str(record))
+        appended = columns(head="t [s],F [N]") + "10.14,0\n"
+        self.assertIn("rest=10 appends no force in the place of the last sample", str(self.read(appended)))
+        for rest, count in ((10, 508), (0.1, 13)):
+            record = self.read(appended, rest=rest)
+            self.same(record, "N", time=0.02 * numpy.arange(count), value=numpy.append(VALUE, numpy.zeros(count - 8)))
+            self.assertEqual(len(record.gaps), 0)
         with self.assertRaisesRegex(ValueError, r"rest = -1: must be in \[0, inf\)"):
             self.read(columns(), rest=-1)
 

@@ -56,7 +56,7 @@ def of_sac(lines: Sequence[str]) -> Column:
     """The samples of a SAC file in alphanumeric form."""
     floats, words, header = SAC_LINES
     integers = numbers(lines[floats:words], "5I10").astype(int)
-    return _of_sac(numbers(lines[:floats], "5G15.7"), integers, numbers([line for line in lines[header:] if line], "5G15.7"))
+    return _of_sac(numbers(lines[:floats], "5G15.7"), integers, numbers(lines[header:], "5G15.7"))
 
 
 def _of_sac(floats: "Array", integers: "Array", samples: "Array") -> Column:

@@ -25,7 +25,7 @@ def _read(lines: list[str]) -> list[Column]:
     found = [(line, match[1].rstrip(".,-")) for pattern in UNITS for line in lines[:at] if (match := pattern.search(line))]
     said, unit = next(((line, unit) for line, unit in found if kind_of(unit)), ("", ""))
     kind = kind_in(said) or kind_of(unit) or kind_in(" ".join(lines[:at])) or "acceleration"
-    values = numbers([line for line in lines[at + 1:] if line.strip()])
+    values = numbers(lines[at + 1:])
     return [Column(kind, counted(values, count, "NPTS"), unit, step, kind=kind)]
 
 

@@ -21,7 +21,7 @@ def _read(lines: list[str]) -> list[Column]:
     at = first + len(block(lines, first)) + comments
     if not all(line.startswith("|") for line in lines[at - comments:at]):
         raise ValueError(f"line {at}: {comments} lines of comments with a | are announced")
-    values = numbers([line for line in lines[at:] if line.strip()], "8E10.4")
+    values = numbers(lines[at:], "8E10.4")
     values = counted(values[:count] if count < len(values) <= count + ROW else values, count)
     kind = "spectrum" if "response" in lines[0].lower() else kind_in(lines[0])
     said = re.search(r"component\s*=\s*(\S.*?)\s*$", "\n".join(lines[:first]), FLAGS)

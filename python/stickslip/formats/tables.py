@@ -28,7 +28,7 @@ READINGS = (("\t", "."), ("\t", ","), (";", "."), (";", ","), ("|", "."), (",", 
 CLOCK = re.compile(r"(\d+):([0-5]\d):([0-5]\d(?:[.,]\d+)?)")
 SPLIT_DATE = re.compile(r"(\d{4}[-/]\d\d[-/]\d\d)\s+(?=\d\d:\d\d)")
 IN_BRACKETS = re.compile(r"(.*?)[\s_,/]*(?:\[(.*)\]|\((.*)\))\s*")
-STATED = re.compile(r"(.+?)(?:\s+in\s+|\s*/\s*)(\S+)")
+APART = re.compile(r"(?<=\w)(?:\s+in\s+|\s*/\s*|[\s_,]+)(?=\S)")
 AMBIGUOUS = ("in", "d", "h", "min", "-", "1")  # are words or parts of names, too
 NO_NAME = re.compile(rf"{NUMBER}[,;]?|.*=")  # words of a sentence or of a header of facts
 NAMES_OF_TIME = ("t", "time", "times", "timestamp", "datetime", "date", "zeit", "temps", "elapsed", "clock", "tiempo", "tempo")
@@ -37,7 +37,6 @@ GLUED = re.compile(r"(t|time|timestamp|elapsed)(s|ms|us|ns|sec|secs|msec|millis|
 
 def _number(field: str, decimal: str) -> float:
     """Dates in microseconds. Raises ValueError where the field is no number."""
-    field = field.strip().strip('"').strip()
     if field.lower() in MISSING:
         return numpy.nan
     if re.fullmatch(NUMBER, field if decimal == "." else field.replace(".", "x").replace(",", ".")):
@@ -50,11 +49,11 @@ def _number(field: str, decimal: str) -> float:
 
 
 def _fields(line: str, delimiter: str | None) -> list[str]:
-    if delimiter is None:
-        return SPLIT_DATE.sub(r"\1T", line).split()
-    fields = next(csv.reader([line.strip(" ")], delimiter=delimiter, skipinitialspace=True)) if '"' in line else (
-        line.strip(" ").split(delimiter))
-    return fields[:-1] if len(fields) > 1 and not fields[-1].strip() else fields
+    fields = SPLIT_DATE.sub(r"\1T", line).split() if delimiter is None else line.strip(" ").split(delimiter)
+    if delimiter and '"' in line:
+        fields = next(csv.reader([line.strip(" ")], delimiter=delimiter, skipinitialspace=True))
+    fields = [field.strip().strip('"').strip() for field in fields]
+    return fields[:-1] if delimiter and len(fields) > 1 and not fields[-1] else fields
 
 
 def _numbers(line: str, reading: tuple[str | None, str]) -> list[float] | None:
@@ -112,15 +111,14 @@ def columns_of(lines: Sequence[str], layout: str | None, delimiter: str | None, 
         elif table and n not in comments:
             raise ValueError(f"line {n + 1}: {line.strip()!r}: needs {count} numbers; correct or remove the line")
         elif not table:
-            fields = _fields(re.sub(r"\s+(?=[\[(])", "", line) if reading[0] is None else line, reading[0])
-            heads.append([field.strip().strip('"').strip() for field in fields])
+            heads.append(_fields(re.sub(r"\s+(?=[\[(])", "", line) if reading[0] is None else line, reading[0]))
     names, units, doubt = _names(heads, count)
     values = numpy.array(table).T
     words = reading[0] is None and not _proper(names) and not any(units)  # of a sentence, perhaps
     if layout is None and (names[0] == UNNAMED.format(0) or words):
         parts = [re.split(r"[,;\s]+", " ".join(head)) for head in heads]
         _require_columns(values, [head for head in parts if len(head) > 2 and all(map(ONE.fullmatch, head))])
-    last = [field.strip().strip('"').strip() for field in _fields(plain[-1], reading[0])]
+    last = _fields(plain[-1], reading[0])
     units = ["us" if DATE.fullmatch(field) else "s" if CLOCK.fullmatch(field) else unit for field, unit in zip(last, units)]
     return [Column(name, column, unit, doubt=doubt, kind="date" if DATE.fullmatch(field) else "")
             for name, unit, column, field in zip(names, units, values, last)]
@@ -181,15 +179,14 @@ def name_and_unit(name: str) -> tuple[str, str]:
         return found[1].strip() or name, (found[2] or found[3] or "").strip()
     if (kind_of(name) == "time" and name.lower() not in ("h", "d", "min", "ns")) or "/" in name and kind_of(name):
         return name, name
-    if (found := STATED.fullmatch(name)) and is_unit(found[2]):
-        return found[1].strip(), found[2]
     apart = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name)
-    glued = GLUED.fullmatch(name)
-    for head, unit in [(apart[:gap.start()].strip(), apart[gap.end():]) for gap in re.finditer(r"(?<=.)[\s_,]+(?=.)", apart)] + (
-            [glued.groups()] if glued else []):
-        kind = kind_of(unit)
-        plain = kind in ("time", "acceleration") or is_unit(unit) and (len(unit) > 1 or unit == "N")
-        if plain and unit.lower() not in AMBIGUOUS or kind == "time" and head.lower() in NAMES_OF_TIME:
+    parts = [(apart[:gap.start()], gap[0].strip(), apart[gap.end():]) for gap in APART.finditer(apart)]
+    if glued := GLUED.fullmatch(name):
+        parts.append((glued[1], "", glued[2]))
+    for head, between, unit in parts:
+        kind, plain = kind_of(unit), len(unit) > 1 or unit == "N"
+        if is_unit(unit) and (between or kind in ("time", "acceleration") or plain) and (between or unit.lower() not in AMBIGUOUS) or (
+                kind == "time" and head.lower() in NAMES_OF_TIME):
             return head, unit
     first, _, rest = re.sub(r"[_,:;/]+", " ", apart).strip().partition(" ")
     return (first, rest.strip()) if first.lower() in NAMES_OF_TIME and rest.strip() else (name, "")
