@@ -291,11 +291,10 @@ def read_record(path: str | os.PathLike[str], *, column: int | str | None = None
     return record.rested(rest)
 
 
-def _record(chosen: Column, time: "Array", unit: str | None, differentiate: bool, source: str,
-            said: Sequence[str]) -> Record:
-    """The record of a column, in SI units where it has units."""
-    kind, given, notes = choice.kind_of_values(chosen, unit, differentiate), chosen.unit if unit is None else unit, [*chosen.notes, *said]
-    factor, standard = in_si(given) if kind_of(given) not in ("", "time") else (1, given)
+def _record(chosen: Column, time: "Array", unit: str | None, differentiate: bool, source: str, said: Sequence[str]) -> Record:
+    """The record of a column."""
+    kind, given = choice.kind_of_values(chosen, unit, differentiate), chosen.unit if unit is None else unit
+    notes = [*chosen.notes, *said, *_marks(chosen.values)]
     if not given:
         notes.append('no unit is named: values are as in the file; unit="g" makes m/s^2 of g')
     elif plain_unit(given) in RAW or not is_unit(given):
@@ -303,18 +302,13 @@ def _record(chosen: Column, time: "Array", unit: str | None, differentiate: bool
                      'scaled(factor, "m/s^2") converts them')
     if unit is not None and chosen.unit and plain_unit(unit) != plain_unit(chosen.unit):
         notes.append(f"the file says {chosen.unit}, and was taken to be in {unit}")
-    if factor != 1:
-        notes.append(f"{given} became {standard}: times {factor:g}")
-    values = factor * chosen.values
-    notes += _marks(chosen.values)
-    known = numpy.isfinite(values) & numpy.isfinite(time)
+    known = numpy.isfinite(chosen.values) & numpy.isfinite(time)
     if not known.all():
         notes.append(f"{(~known).sum()} samples are no numbers and were left out")
-    record = Record(time[known], values[known], standard, source)
+    record = Record(time[known], chosen.values[known], given, source, tuple(notes))
     for _ in range(("velocity", "displacement").index(kind) + 1 if differentiate else 0):
-        record = dataclasses.replace(record, value=numpy.gradient(record.value, record.time), unit="m/s^2")
-    notes += [f"the {kind} was differentiated by central differences"] if differentiate else []
-    return dataclasses.replace(record, notes=tuple(notes))
+        record = record._changed(value=numpy.gradient(record.value, record.time), unit="m/s^2")
+    return record._changed(f"the {kind} was differentiated by central differences") if differentiate else record
 
 
 def _marks(values: "Array") -> list[str]:

@@ -143,6 +143,7 @@ class Text(Case):
         self.refused("is empty", "\n\n")
         self.refused(r"time\[2\] = 1: must be above time\[1\] = 1; sort", "t,a\n0,1\n1,2\n1,3\n")
         self.refused("binary, in no known format", b"\0\1\2" * 50, "a.sac")
+        self.refused("is packed, or a spreadsheet: unpack it", b"PK\3\4" + b"\0\1\2" * 50, "a.zip")
         self.assertRaisesRegex(FileNotFoundError, "none.csv: no such file", stickslip.read_record, self.folder / "none.csv")
 
     def test_gaps_missing_values_and_drift(self):
@@ -474,6 +475,8 @@ class Descriptions(Case):
                  ": 8\nSAMPLING INTERVAL (sec) : 0.02\nRAW PGA VALUES (gal)    : (N-S) 13.2 (E-W) 12.1 (U-D) 9.8\nCopyright\n"
                  "       N-S          E-W          U-D\n" + "".join(fixed([v, -v, 2 * v], "13.6f", 3) for v in VALUE))
         self.same(self.read(older, "g.txt", channel="E-W"), "m/s^2", -0.01, within=1e-9)
+        other = older.replace("N-S          E-W          U-D", "NS  EW  UD").replace("INTERVAL (sec) :", "INTERVAL :")
+        self.same(self.read(other, "h.txt", channel="UD"), "m/s^2", 0.02, within=1e-9)
 
     def test_csmnc(self):
         head = ("065JZC120103153901\n0120103153957 2012-01-03 15:39:57 BTM\nMAGNITUDE  4.0(Ms)\nCOMP. {}\n"

@@ -85,8 +85,8 @@ FORMATS = (
         ("step", "SAMPLING_INTERVAL_S:", NUMBER), ("count", "NDATA:", NUMBER), ("unit", "UNITS:", WORD)), (
         ("name", rf"^STREAM:{WORD}"), ("kind", rf"^DATA_TYPE:{REST}"), ("", "^USER5:()"))),
     _keyed("AFAD", "", (
-        ("count", "NUMBER OF DATA", NUMBER), ("step", "SAMPLING INTERVAL", rf"[ \t]*\(\w+\){NUMBER}")), (
-        ("unit", r"^.*PGA.*?\((\w\S*?)\)\s*:"), ("names", r"^\s*([NEUV]-\w(?:\s+[NEUV]-\w)+)\s*$"))),
+        ("count", "NUMBER OF DATA", NUMBER), ("step", "SAMPLING INTERVAL", rf"[ \t]*(?:\(\w+\.?\))?{NUMBER}")), (
+        ("unit", r"^.*PGA.*?\((\w\S*?)\)\s*:"), ("names", r"^\s*([A-Z][\w-]{0,2}(?:\s+[A-Z][\w-]{0,2}){2})\s*$"))),
     _keyed("CSMNC", "", (
         ("name", "COMP.", WORD), ("count", "NO. OF POINTS:", NUMBER)), (
         ("step", r"^NO\. OF POINTS:.*INTERVALS OF:\s*([\d.]+)"), ("unit", r"UNIT:\s*(\S+)"),

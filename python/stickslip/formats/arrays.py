@@ -38,6 +38,8 @@ def columns_of(path: pathlib.Path, data: bytes) -> tuple[str, list[Column]] | No
     if MINISEED.match(data):
         return "MiniSEED", [Column(trace.id, numpy.asarray(trace.data, float), "", float(trace.stats.delta))
                             for trace in needed("obspy").read(str(path))]
+    if data.startswith((b"PK\3\4", b"\x1f\x8b")):
+        raise ValueError("is packed, or a spreadsheet: unpack it, or save it as CSV")
     if data.count(b"\0") > len(data) * ZEROS and not data.startswith((b"\xff\xfe", b"\xfe\xff")):
         raise ValueError("is binary, in no known format; take text, or make a stickslip.Record(time, value, unit) of what "
                          "another reader gives, such as ObsPy")

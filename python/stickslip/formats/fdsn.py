@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from ..needed import needed
 from . import tables
-from .reading import Column, Format, counted, keys, microseconds, numbers
+from .reading import Column, Format, counted, microseconds, numbers
 
 if TYPE_CHECKING:
     import numpy
@@ -52,7 +52,8 @@ def _series(lines: list[str]) -> list[Column]:
 def _geocsv(lines: list[str]) -> list[Column]:
     heads, pieces = [n for n, line in enumerate(lines) if re.match(r"#\s*dataset\s*:", line, re.IGNORECASE)], []
     for low, high in zip(heads, [*heads[1:], len(lines)]):
-        said = keys([line for line in lines[low:high] if line.startswith("#")])
+        stated = [line.lstrip("# ").partition(":") for line in lines[low:high] if line.startswith("#")]
+        said = {key.strip().upper(): value.strip() for key, _, value in stated}
         delimiter = said.get("DELIMITER", ",").strip("'\"").replace("\\t", "\t") or None
         units = [unit.strip() for unit in re.split(rf"[,{re.escape(delimiter or '')}]", said["FIELD_UNIT"])]
         body = [line for line in lines[low:high] if not line.startswith("#")]

@@ -1,4 +1,4 @@
-"""What descriptions of record formats share: columns, signs of a format, numbers of a Fortran format, lines "key: value"."""
+"""What descriptions of record formats share: columns, signs of a format, and numbers of a Fortran format."""
 
 import dataclasses
 import datetime
@@ -134,12 +134,6 @@ def lasting(step: float, count: int, seconds: float, within: float) -> str:
     if step > 0 and abs(step * count - seconds) <= within:
         return ""
     return f"a sampling interval of {step:g} s does not make {count} samples last {seconds:g} s, as the header says"
-
-
-def keys(lines: Sequence[str]) -> dict[str, str]:
-    """Of the lines "KEY: value" above the first line of numbers, perhaps behind a #: values by the keys in capitals."""
-    parts = [line.lstrip(" #").partition(":") for line in itertools.takewhile(lambda line: not numeric(line), lines)]
-    return {key.strip().upper(): value.strip() for key, colon, value in parts if colon}
 
 
 def data_of(lines: Sequence[str]) -> list[str]:

@@ -209,16 +209,14 @@ def _channels(lines: Sequence[str], layout: str, delimiter: str | None) -> list[
             ended = count < wide
     if not channels:
         raise ValueError("no numbers in rows; give a file with samples")
-    return [_channel(name, n, numbers(block), layout) for n, (name, block) in enumerate(channels)]
-
-
-def _channel(name: str, n: int, values: "Array", layout: str) -> Column:
-    name = name or f"block {n} of {len(values)}"
-    if layout == "rows":
-        return Column(name, values)
-    if len(values) % 2:
-        raise ValueError(f"{name}: {len(values)} numbers are no pairs; correct the last row")
-    return Column(name, values[1::2], times=values[::2], time_unit="")
+    found = []
+    for n, (name, block) in enumerate(channels):
+        values = numbers(block)
+        name = name or f"block {n} of {len(values)}"
+        if layout == "pairs" and len(values) % 2:
+            raise ValueError(f"{name}: {len(values)} numbers are no pairs; correct the last row")
+        found.append(Column(name, values) if layout == "rows" else Column(name, values[1::2], times=values[::2], time_unit=""))
+    return found
 
 
 def ways(lines: Sequence[str]) -> str:
