@@ -200,7 +200,7 @@ class Record:
     @property
     def _appended(self) -> bool:
         """Whether the last sample is a single one of no force behind a gap."""
-        return len(self.gaps) > 0 and self.gaps[-1, 1] == self.time[-1] and self.value[-1] == 0
+        return bool(len(self.gaps) and self.gaps[-1, 1] == self.time[-1] and self.value[-1] == 0)
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the file of `-force_file`: a line `time,force` for each sample, and `vertical` where there is such an
@@ -227,8 +227,8 @@ def read_record(path: str | os.PathLike[str], *, column: int | str | None = None
 
     Text with columns (any separator, decimal comma, header, byte-order mark, times as dates) or with samples in rows; AT2 of
     PEER, COSMOS V0 to V2, CSMIP, GeoNet, SMC, K-NET and KiK-net, CWA, ESM, AFAD, CSMNC, GeoCSV, TSPAIR, SLIST, SAC, .npy,
-    .mat of MATLAB 5 to 7 (needs SciPy), MiniSEED (needs ObsPy). Accelerations become m/s^2, with g = 9.80665 m/s^2, and times s;
-    `notes` say so.
+    .mat of MATLAB 5 to 7 (needs SciPy), MiniSEED (needs ObsPy). Accelerations become m/s^2, with g = 9.80665 m/s^2, and
+    times s; `notes` say so.
 
     Parameters
     ----------
@@ -317,8 +317,8 @@ def _marks(values: "Array") -> list[str]:
     largest = sizes.max(initial=0)
     if not re.fullmatch(r"9{3,}(\.9+|\.25)?", f"{largest:.10g}") or (sizes[sizes < largest] > largest / 10).any():
         return []
-    return [f"{(sizes == largest).sum()} samples are {largest:g} in size, as marks of missing ones are: nan in their place leaves "
-            "them out"]
+    return [f"{(sizes == largest).sum()} samples are {largest:g} in size, as marks of missing ones are: nan in their place "
+            "leaves them out"]
 
 
 def _findings(record: Record) -> list[str]:
@@ -327,7 +327,7 @@ def _findings(record: Record) -> list[str]:
     if len(record.gaps):
         lengths, (begin, end) = numpy.diff(record.gaps), record.longest_gap
         found.append(f"{len(lengths)} gaps of {lengths.sum():g} s in all, the longest from {begin:g} to {end:g} s"
-                     + (f": rest={lengths[-1, 0]:g} appends no force in the place of the last sample" if record._appended else ""))
+                     + f": rest={lengths[-1, 0]:g} appends no force in the place of the last sample" * record._appended)
     if not record.even:
         steps = numpy.diff(record.time)
         found.append(f"steps are uneven, from {steps.min():g} to {steps.max():g} s: resampled() makes them even")

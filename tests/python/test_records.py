@@ -514,8 +514,10 @@ class Descriptions(Case):
             return f"PEER\nSomewhere, 1/2/1999, Hill, 90\n{line}\nNPTS=     8, DT=   .0200 SEC,\n" + fixed(VALUE, "15.7E", 5)
 
         for line in ("The units are (g)", "ACCELERATION TIME HISTORY IN UNITS OF (G)", "Units: g",
-                     "ACCELERATION IN UNITS OF G."):
+                     "ACCELERATION IN UNITS OF G.", "Acceleration in g"):
             self.same(self.read(text(line), "a.AT2"), "m/s^2", G, within=1e-6)
+        for step in ("DT= 20 MSEC", "dt=20 ms", "DT=.02", "DT= 2.0E-02 SEC"):
+            self.same(self.read(text(line).replace("DT=   .0200 SEC", step), "a.AT2"), "m/s^2", G, within=1e-6)
         self.refused("is a velocity, no force or acceleration; differentiate=True takes its derivative",
                      text("VELOCITY TIME SERIES IN UNITS OF CM/S"),
                      "a.VT2")

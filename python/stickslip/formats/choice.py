@@ -65,8 +65,8 @@ def time_column(columns: Sequence[Column], wanted: int | str | None) -> Column |
     if len(columns) < 2 or columns[0] not in rising:
         return None
     if COUNTS.fullmatch(columns[0].name):
-        raise ValueError(f"{columns[0].name or 'column 0'}: counts samples; give the sampling interval in seconds, as step=0.01, or "
-                         "time=0 if these are times")
+        raise ValueError(f"{columns[0].name or 'column 0'}: counts samples; give the sampling interval in seconds, as "
+                         "step=0.01, or time=0 if these are times")
     return columns[0]
 
 
@@ -89,7 +89,8 @@ def times_of(chosen: Column, times: Column | None, step: float | None, unit: str
     """Times [s] of the samples of a column, and what was done to them."""
     if step is not None or times is None and chosen.times is None:
         if not (step or chosen.step):
-            raise ValueError(f"step: {chosen.doubt or 'the file has no times'}; give the sampling interval in seconds, as step=0.01")
+            raise ValueError(f"step: {chosen.doubt or 'the file has no times'}; give the sampling interval in seconds, as "
+                             "step=0.01")
         other = step and chosen.step not in (None, step)
         notes = [f"the file says steps of {chosen.step:g} s, and {step:g} s were taken"] if other else []
         start = chosen.start if chosen.times is None else chosen.times[0]
@@ -100,10 +101,10 @@ def times_of(chosen: Column, times: Column | None, step: float | None, unit: str
     _require((
         (len(times.values) != len(chosen.values), f"time = {times.name}: has {len(times.values)} entries, {chosen.name} has "
          f"{len(chosen.values)}; name columns of one length"),
-        (times.doubt and not unit, f'time_unit: {times.doubt}; give it, as time_unit="s" or time_unit="ms", or the sampling interval, '
-         "as step=0.01"),
-        (given and kind_of(given) != "time", f'time_unit: {times.name} is in {given}, which is none of {", ".join(KINDS["time"][1])}; '
-         'give time_unit="ms" or the like, or the sampling interval in seconds, as step=0.01'),
+        (times.doubt and not unit, f'time_unit: {times.doubt}; give it, as time_unit="s" or time_unit="ms", or the sampling '
+         "interval, as step=0.01"),
+        (given and kind_of(given) != "time", f'time_unit: {times.name} is in {given}, which is none of '
+         f'{", ".join(KINDS["time"][1])}; give time_unit="ms" or the like, or the sampling interval in seconds, as step=0.01'),
         (not given and abs(first) > 1e3 * EPOCH, f"time_unit: {times.name} begins at {first:.15g} without a unit; give "
          'time_unit="ms", "us" or "ns"')))
     dated, distant = times.kind == "date", abs(first * factor) > EPOCH

@@ -2,7 +2,8 @@
 
 Each channel has lines of text, integers and numbers, whose counts and Fortran formats the lines above them state, comments,
 and samples. Of the numbers, 62 is the sampling interval of the samples in ms and 63 their duration in s; 34 is the interval
-of the recorder in s. Counts of an accelerometer times value 22 [uV], over value 42 [V/g] and the gain, value 47, are g. The line above the samples has their number, about their duration, unit with its code, and format.
+of the recorder in s. Counts of an accelerometer times value 22 [uV], over value 42 [V/g] and the gain, value 47, are g. The
+line above the samples has their number, about their duration, unit with its code, and format.
 """
 
 import dataclasses

@@ -60,8 +60,8 @@ def _geocsv(lines: list[str]) -> list[Column]:
         columns = tables.columns_of(body, "columns", delimiter if delimiter in body[0] else None, ".")
         times = next((column.values for column in columns if column.kind == "date"), None)
         if len(columns) != len(units) or times is None and len(units) > 1:
-            raise ValueError(f"field_unit: {said['FIELD_UNIT']} and the columns {', '.join(column.name for column in columns)}: "
-                             "needs as many units, one of them of dates such as 2001-01-31T23:59:58.5Z")
+            raise ValueError(f"field_unit: {said['FIELD_UNIT']} for {len(columns)} columns: needs as many units, one of them "
+                             "of dates such as 2001-01-31T23:59:58.5Z")
         if times is None:
             times = _even(said["START_TIME"], said["SAMPLE_RATE_HZ"], len(columns[0].values))
         counted(times, int(said.get("SAMPLE_COUNT", len(times))))

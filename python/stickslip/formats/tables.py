@@ -28,6 +28,7 @@ READINGS = (("\t", "."), ("\t", ","), (";", "."), (";", ","), ("|", "."), (",", 
 CLOCK = re.compile(r"(\d+):([0-5]\d):([0-5]\d(?:[.,]\d+)?)")
 SPLIT_DATE = re.compile(r"(\d{4}[-/]\d\d[-/]\d\d)\s+(?=\d\d:\d\d)")
 IN_BRACKETS = re.compile(r"(.*?)[\s_,/]*(?:\[(.*)\]|\((.*)\))\s*")
+BRACKETED = re.compile(r"[\[(].*[\])]")
 APART = re.compile(r"(?<=\w)(?:\s+in\s+|\s*/\s*|[\s_,]+)(?=\S)")
 AMBIGUOUS = ("in", "d", "h", "min", "-", "1")  # are words or parts of names, too
 NO_NAME = re.compile(rf"{NUMBER}[,;]?|.*=")  # words of a sentence or of a header of facts
@@ -151,7 +152,7 @@ def _names(heads: Sequence[Sequence[str]], count: int) -> tuple[list[str], list[
     unnamed = [UNNAMED.format(n) for n in range(count)]
     above = [head for head in heads[-2:] if len(head) == count and not any(map(NO_NAME.fullmatch, head))]
     last = bool(above) and above[-1] is heads[-1]
-    units = [head for head in above if any(head) and all(re.fullmatch(r"[\[(].*[\])]", field) or is_unit(field) for field in head)]
+    units = [head for head in above if any(head) and all(BRACKETED.fullmatch(field) or is_unit(field) for field in head)]
     names = [head for head in above if head not in units]
     if last and len(units) == len(names) == 1 and (len(fitting) == 2 or _proper(names[0])):
         return names[0], [field.strip("[]()") for field in units[0]], ""
@@ -184,9 +185,9 @@ def name_and_unit(name: str) -> tuple[str, str]:
     if glued := GLUED.fullmatch(name):
         parts.append((glued[1], "", glued[2]))
     for head, between, unit in parts:
-        kind, plain = kind_of(unit), len(unit) > 1 or unit == "N"
-        if is_unit(unit) and (between or kind in ("time", "acceleration") or plain) and (between or unit.lower() not in AMBIGUOUS) or (
-                kind == "time" and head.lower() in NAMES_OF_TIME):
+        kind = kind_of(unit)
+        clear = unit.lower() not in AMBIGUOUS and (kind in ("time", "acceleration") or len(unit) > 1 or unit == "N")
+        if is_unit(unit) and (between or clear) or kind == "time" and head.lower() in NAMES_OF_TIME:
             return head, unit
     first, _, rest = re.sub(r"[_,:;/]+", " ", apart).strip().partition(" ")
     return (first, rest.strip()) if first.lower() in NAMES_OF_TIME and rest.strip() else (name, "")
