@@ -162,6 +162,10 @@ class Text(Case):
         self.assertIn("drifts by", str(self.read("t,a\n" + "".join(f"{t:.2f},{v}\n" for t, v in zip(time, noise + time / 20)))))
         self.assertNotIn("drift", str(self.read("t,a\n" + "".join(f"{t:.2f},{v}\n" for t, v in zip(time, noise)))))
 
+    def test_a_bad_line_of_many_numbers_takes_no_time(self):
+        """A pattern that reads digits in several ways would try 6^40 of them before it gives up."""
+        self.refused("", "x\n" + "123456 " * 40 + "?\n" + "1 2 3\n" * 3, layout="rows", column=5)
+
     def test_marks_of_missing_values(self):
         for mark in ("9999", "-999.25", "99999.9"):
             marked = columns(head="t,a [g]").replace("0.1250", mark)

@@ -48,17 +48,14 @@ def columns_of(path: pathlib.Path, layout: str | None = None, delimiter: str | N
             raise ValueError("holds spectra, no force or acceleration over time; take the file of the acceleration")
         if not known:
             raise ValueError(f"is no whole file of {nearest.name}, which has {' and '.join(missing[nearest])}")
-        return known.name, _wanted(known.read(lines))
+        if columns := known.read(lines):
+            return known.name, [column for column in columns if column.kind == "acceleration"] or columns
+        raise ValueError("no samples below its header")
     except (ValueError, IndexError, KeyError, StopIteration) as problem:
         said = str(problem) if isinstance(problem, ValueError) else "its header ends too early"
         if any(word in said for word in ("layout", "spectra", "empty")):
             raise
-    if "no numbers" in said:
+    if "no numbers" in said and not known:
         said += f"; nearest is {nearest.name}, which has {' and '.join(missing[nearest])}" if share else f"; is none of {NAMES}"
     raise ValueError(f"{f'{known.name}: ' if known and not layout else ''}{said}; fetch it anew, or read its numbers alone: "
                      f"{tables.ways(lines)}")
-
-
-def _wanted(columns: list[Column]) -> list[Column]:
-    """The accelerations where there are some, else all."""
-    return [column for column in columns if column.kind == "acceleration"] or columns

@@ -47,8 +47,8 @@ def columns_of(path: pathlib.Path, data: bytes) -> tuple[str, list[Column]] | No
 
 
 def is_sac(lines: Sequence[str]) -> bool:
-    """Whether lines are those of a SAC file in alphanumeric form: five numbers each, then five integers each, then words."""
-    floats, integers, header = (re.compile(rf"(?:\s*{number}){{5}}\s*") for number in (NUMBER, r"[-+]?\d+", r".{8}"))
+    """Whether lines are those of a SAC file in alphanumeric form: five numbers each, then five integers each."""
+    floats, integers = (re.compile(rf"\s*{number}(?:\s+{number}){{4}}\s*") for number in (NUMBER, r"[-+]?\d+"))
     begins = (0, floats), (SAC_LINES[0], integers)
     return len(lines) > SAC_LINES[2] and all(
         form.fullmatch(line) for (begin, form), end in zip(begins, SAC_LINES) for line in lines[begin:end])

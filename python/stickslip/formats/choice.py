@@ -126,8 +126,8 @@ def kind_of_values(chosen: Column, unit: str | None, differentiate: bool) -> str
     _require((
         (unit is not None and kind and declared not in ("", kind), f"unit = {unit}: is one of {kind}, and the file says that "
          f"{chosen.name} is a {declared}; leave it out"),
-        (moved and not differentiate, f"{chosen.name}: is a {kind}, no force or acceleration; differentiate=True takes its "
-         f"{'' if kind == 'velocity' else 'second '}derivative, or take the file of the acceleration"),
+        (moved and not differentiate, f"{chosen.name}: is a {kind}, no force or acceleration; differentiate=True"
+         f"{'' if kind_of(given) else ' with unit='} takes its {'' if kind == 'velocity' else 'second '}derivative, or take the file of the acceleration"),
         (chosen.kind not in ("", *KINDS), f"{chosen.name}: is a {chosen.kind}, no force or acceleration over time; take "
          "another file"),
         (differentiate and not moved, f'differentiate: {chosen.name} is no velocity or displacement; leave it out, or say '

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     Array = numpy.ndarray
 numpy = needed("numpy")
 
-NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][-+]?\d+)?"
+NUMBER = r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eEdD][-+]?\d+)?"  # in one way only, for the sake of time
 NUMBERS = re.compile(rf"\s*{NUMBER}(?:(?:\s+|(?=[-+])){NUMBER})*\s*")  # "1.5-2.5" are two, as Fortran writes them
 ONE = re.compile(NUMBER)
 TOUCHING = re.compile(r"(?<=[\d.])(?=[-+])")

@@ -228,7 +228,8 @@ def ways(lines: Sequence[str]) -> str:
             columns = columns_of(lines, layout, None, None)
         except ValueError:
             continue
-        largest = sorted(range(len(columns)), key=lambda n: -len(columns[n].values))[:MOST]
+        usable = [n for n, column in enumerate(columns) if column.kind != "date"]
+        largest = sorted(usable, key=lambda n: -len(columns[n].values))[:MOST]
         found.append(f'layout="{layout}" ({how}) with step=, unit= and column= of ' + ", ".join(
             f"{n} ({columns[n].name}: {len(columns[n].values)})" for n in sorted(largest)))
     return " or ".join(found) or "by a stickslip.Record(time, value, unit) of your own arrays"
