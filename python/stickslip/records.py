@@ -9,8 +9,8 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from . import formats
+from .formats import choice
 from .formats.reading import Column
-from .formats.tables import NAMES_OF_TIME
 from .needed import needed
 from .units import KINDS, in_si, is_unit, kind_of, plain_unit
 
@@ -19,10 +19,7 @@ if TYPE_CHECKING:
     Array = numpy.ndarray
 numpy = needed("numpy")
 
-COUNTS = ("index", "sample", "samples", "frame", "frames", "point", "points", "number", "no", "n", "i", "nr", "id", "row",
-          "count", "step", "timestep")  # are no times
 RAW = ("counts", "count", "v", "mv", "uv")  # units of what a recorder writes
-EPOCH = 1e8    # times beyond it [s] count from a date
 ABOUT_GRAVITY = (9.7, 9.9)  # factors that make m/s^2 of g
 OFFSET = 3     # of the largest integral of an acceleration without its mean, beyond which its mean is in doubt
 GAP = 1.5      # steps between two samples, from which on samples are missing
@@ -191,12 +188,19 @@ class Record:
                              **{name: numpy.interp(time, self.time, getattr(self, name)) for name in self._samples})
 
     def rested(self, rest: float) -> "Record":
-        """With samples of no force at the end for some seconds, in which a body comes to rest."""
+        """With samples of no force at the end for some seconds, in which a body comes to rest; they take the place of a single
+        one that stands behind a gap."""
         if not 0 <= rest < numpy.inf:
             raise ValueError(f"rest = {rest}: must be in [0, inf); give the seconds of no force to append")
-        time = self.time[-1] + self.step * numpy.arange(1, numpy.ceil(rest / self.step - 1e-9) + 1)
+        held = slice(-1 if rest and self._appended else None)
+        time = self.time[held][-1] + self.step * numpy.arange(1, numpy.ceil(rest / self.step - 1e-9) + 1)
         return self._changed(f"{rest:g} s of no force were appended" if rest else "", **{
-            name: numpy.append(getattr(self, name), time if name == "time" else 0 * time) for name in self._samples})
+            name: numpy.append(getattr(self, name)[held], time if name == "time" else 0 * time) for name in self._samples})
+
+    @property
+    def _appended(self) -> bool:
+        """Whether the last sample is a single one of no force behind a gap."""
+        return bool(len(self.gaps) and self.gaps[-1, 1] == self.time[-1] and self.value[-1] == 0)
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the file of `-force_file`: a line `time,force` for each sample, and `vertical` where there is such an
@@ -222,9 +226,9 @@ def read_record(path: str | os.PathLike[str], *, column: int | str | None = None
     """Read a measured force or acceleration.
 
     Text with columns (any separator, decimal comma, header, byte-order mark, times as dates) or with samples in rows; AT2 of
-    PEER, COSMOS V0 to V2, CSMIP, GeoNet, SMC, K-NET and KiK-net, CWA, ESM, AFAD, GeoCSV, TSPAIR, SLIST, SAC, .npy, .mat of
-    MATLAB 5 to 7 (needs SciPy), MiniSEED (needs ObsPy). Accelerations become m/s^2, with g = 9.80665 m/s^2, and times s;
-    `notes` say so.
+    PEER, COSMOS V0 to V2, CSMIP, GeoNet, SMC, K-NET and KiK-net, CWA, ESM, AFAD, CSMNC, GeoCSV, TSPAIR, SLIST, SAC, .npy,
+    .mat of MATLAB 5 to 7 (needs SciPy), MiniSEED (needs ObsPy). Accelerations become m/s^2, with g = 9.80665 m/s^2, and
+    times s; `notes` say so.
 
     Parameters
     ----------
@@ -278,131 +282,19 @@ def read_record(path: str | os.PathLike[str], *, column: int | str | None = None
         raise ValueError(f"time_unit = {time_unit}: must be one of {', '.join(KINDS['time'][1])}")
     try:
         form, columns = formats.columns_of(path, layout, delimiter, decimal)
-        times = None if step is not None else _time_column(columns, time)
-        chosen = _value_column(columns, times, column, channel)
-        moments, said = _times(chosen, times, step, time_unit)
+        times = None if step is not None else choice.time_column(columns, time)
+        chosen = choice.value_column(columns, times, column, channel)
+        moments, said = choice.times_of(chosen, times, step, time_unit)
         record = _record(chosen, moments, unit, differentiate, f"{path.name}: {form}, column {chosen.name}", said)
     except ValueError as problem:
         raise ValueError(f"{path}: {problem}") from None
     return record.rested(rest)
 
 
-def _named(columns: Sequence[Column], wanted: int | str, option: str, words: bool = False) -> Column:
-    """The column of a name or a number, or of words of its name."""
-    text = str(wanted).lower()
-    for n, column in enumerate(columns):
-        names = (column.name.lower(), f"{column.name} ({column.unit})".lower(), f"{column.name} [{column.unit}]".lower())
-        if text in names or text == str(n) and not words:
-            return column
-    found = [column for column in columns if re.search(rf"(?<!\w){re.escape(text)}(?!\w)", column.name.lower())]
-    if len(found) == 1 and not text.isdigit() or len(found) == 1 and words:
-        return found[0]
-    raise ValueError(f"{option} = {wanted}: there is {'more than one' if len(found) > 1 else 'no'} such column; take one of "
-                     f"{_listed(columns)}{_doubt(columns)}")
-
-
-def _listed(columns: Sequence[Column], without: Column | None = None) -> str:
-    return ", ".join(f"{n} ({column.name})" for n, column in enumerate(columns) if column is not without)
-
-
-def _doubt(columns: Sequence[Column]) -> str:
-    return f" ({columns[0].doubt})" if columns[0].doubt else ""
-
-
-def _time_column(columns: Sequence[Column], wanted: int | str | None) -> Column | None:
-    if wanted is not None:
-        return _named(columns, wanted, "time")
-    if any(column.step or column.times is not None for column in columns):
-        return None
-    rising = [column for column in columns if (numpy.diff(column.values) > 0).all()]
-    for column in (*rising, *columns):
-        if column.name.lower() in NAMES_OF_TIME or column in rising and kind_of(column.unit) == "time":
-            return column
-    if len(columns) < 2 or columns[0] not in rising:
-        return None
-    if columns[0].name.lower() in COUNTS:
-        raise ValueError(f"{columns[0].name}: counts samples; give the sampling interval in seconds, as step=0.01, or time=0 "
-                         "if these are times")
-    return columns[0]
-
-
-def _value_column(columns: Sequence[Column], times: Column | None, column: int | str | None, channel: str | None) -> Column:
-    if column is not None and channel is not None:
-        raise ValueError(f"column = {column}, channel = {channel}: name the same; give one of them")
-    if channel is not None:
-        return _named(columns, channel, "channel", words=True)
-    if column is not None:
-        return _named(columns, column, "column")
-    others = [column for column in columns if column is not times]
-    if len(others) == 1:
-        return others[0]
-    raise ValueError(f"column: there are {len(others)} columns of values; take one of {_listed(columns, times)}"
-                     + _doubt(columns))
-
-
-def _times(chosen: Column, times: Column | None, step: float | None, unit: str | None) -> "tuple[Array, list[str]]":
-    """Times [s] of the samples of a column, and what was done to them."""
-    if step is None and times is None and chosen.times is not None:
-        times = dataclasses.replace(chosen, values=chosen.times, unit=chosen.time_unit, notes=())
-    elif times is None:
-        if step is None and not chosen.step:
-            raise ValueError(f"step: {chosen.doubt or 'the file has no times'}; give the sampling interval in seconds, as "
-                             "step=0.01")
-        start, usual = (chosen.start, chosen.step) if chosen.times is None else (chosen.times[0], None)
-        other = usual and step not in (None, usual)
-        notes = [f"the file says steps of {usual:g} s, and {step:g} s were taken"] if other else []
-        return start + (step or usual) * numpy.arange(len(chosen.values)), notes
-    if len(times.values) != len(chosen.values):
-        raise ValueError(f"time = {times.name}: has {len(times.values)} entries, {chosen.name} has {len(chosen.values)}; name "
-                         "columns of one length")
-    given = unit or times.unit
-    if times.doubt and not unit:
-        raise ValueError(f'time_unit: {times.doubt}; give it, as time_unit="s" or time_unit="ms", or the sampling interval, as '
-                         "step=0.01")
-    if given and kind_of(given) != "time":
-        raise ValueError(f'time_unit: {times.name} is in {given}, which is none of {", ".join(KINDS["time"][1])}; give '
-                         'time_unit="ms" or the like, or the sampling interval in seconds, as step=0.01')
-    factor, first, notes = in_si(given or "s")[0], times.values[0], []
-    if not given and abs(first) > 1e3 * EPOCH:
-        raise ValueError(f'time_unit: {times.name} begins at {first:.15g} without a unit; give time_unit="ms", "us" or "ns"')
-    if times.kind == "date" and unit is None:
-        notes.append(f"times are from the first sample, {numpy.datetime64(int(first), 'us')}")
-    elif abs(first * factor) > EPOCH:
-        notes.append(f"times are from the first sample, {first:.15g} {given or 's'}")
-    elif not given:
-        notes.append('times are read as seconds, which the file does not say; time_unit="ms" reads others')
-    elif factor != 1:
-        notes.append(f"{given} became s: times {factor:g}")
-    origin = first if times.kind == "date" or abs(first * factor) > EPOCH else 0
-    return (times.values - origin) * factor, notes
-
-
-def _kind(chosen: Column, unit: str | None, differentiate: bool) -> str:
-    """What the values of a column are, "" for what is not known. Refuses what is no force or acceleration."""
-    given, declared = chosen.unit if unit is None else unit, kind_of(chosen.unit) or chosen.kind
-    kind = kind_of(given) or (declared if unit is None else "")
-    if unit is not None and kind and declared not in ("", kind):
-        raise ValueError(f"unit = {unit}: is one of {kind}, and the file says that {chosen.name} is a {declared}; leave it out")
-    moved = kind in ("velocity", "displacement")
-    if moved and not differentiate:
-        raise ValueError(f"{chosen.name}: is a {kind}, no force or acceleration; differentiate=True takes its "
-                         f"{'' if kind == 'velocity' else 'second '}derivative, or take the file of the acceleration")
-    if chosen.kind not in ("", *KINDS):
-        raise ValueError(f"{chosen.name}: is a {chosen.kind}, no force or acceleration over time; take another file")
-    if differentiate and not moved:
-        raise ValueError(f'differentiate: {chosen.name} is no velocity or displacement; leave it out, or say unit="cm/s"')
-    if differentiate and not kind_of(given):
-        raise ValueError(f'unit: the file does not say the unit of the {kind}; give it, as unit="m/s" or unit="cm"')
-    if given and kind == "acceleration" and not kind_of(given) and not is_unit(given):
-        raise ValueError(f'unit: {given} is no unit of an acceleration that is known; give it, as unit="cm/s^2"')
-    return kind
-
-
-def _record(chosen: Column, time: "Array", unit: str | None, differentiate: bool, source: str,
-            said: Sequence[str]) -> Record:
-    """The record of a column, in SI units where it has units."""
-    kind, given, notes = _kind(chosen, unit, differentiate), chosen.unit if unit is None else unit, [*chosen.notes, *said]
-    factor, standard = in_si(given) if kind_of(given) not in ("", "time") else (1, given)
+def _record(chosen: Column, time: "Array", unit: str | None, differentiate: bool, source: str, said: Sequence[str]) -> Record:
+    """The record of a column."""
+    kind, given = choice.kind_of_values(chosen, unit, differentiate), chosen.unit if unit is None else unit
+    notes = [*chosen.notes, *said, *_marks(chosen.values)]
     if not given:
         notes.append('no unit is named: values are as in the file; unit="g" makes m/s^2 of g')
     elif plain_unit(given) in RAW or not is_unit(given):
@@ -410,17 +302,23 @@ def _record(chosen: Column, time: "Array", unit: str | None, differentiate: bool
                      'scaled(factor, "m/s^2") converts them')
     if unit is not None and chosen.unit and plain_unit(unit) != plain_unit(chosen.unit):
         notes.append(f"the file says {chosen.unit}, and was taken to be in {unit}")
-    if factor != 1:
-        notes.append(f"{given} became {standard}: times {factor:g}")
-    values = factor * chosen.values
-    known = numpy.isfinite(values) & numpy.isfinite(time)
+    known = numpy.isfinite(chosen.values) & numpy.isfinite(time)
     if not known.all():
         notes.append(f"{(~known).sum()} samples are no numbers and were left out")
-    record = Record(time[known], values[known], standard, source)
+    record = Record(time[known], chosen.values[known], given, source, tuple(notes))
     for _ in range(("velocity", "displacement").index(kind) + 1 if differentiate else 0):
-        record = dataclasses.replace(record, value=numpy.gradient(record.value, record.time), unit="m/s^2")
-    notes += [f"the {kind} was differentiated by central differences"] if differentiate else []
-    return dataclasses.replace(record, notes=tuple(notes))
+        record = record._changed(value=numpy.gradient(record.value, record.time), unit="m/s^2")
+    return record._changed(f"the {kind} was differentiated by central differences") if differentiate else record
+
+
+def _marks(values: "Array") -> list[str]:
+    """A sentence on values that probably mark missing ones: such as 9999 or -999.25, far beyond all others."""
+    sizes = abs(values[numpy.isfinite(values)])
+    largest = sizes.max(initial=0)
+    if not re.fullmatch(r"9{3,}(\.9+|\.25)?", f"{largest:.10g}") or (sizes[sizes < largest] > largest / 10).any():
+        return []
+    return [f"{(sizes == largest).sum()} samples are {largest:g} in size, as marks of missing ones are: nan in their place "
+            "leaves them out"]
 
 
 def _findings(record: Record) -> list[str]:
@@ -428,9 +326,8 @@ def _findings(record: Record) -> list[str]:
     found = []
     if len(record.gaps):
         lengths, (begin, end) = numpy.diff(record.gaps), record.longest_gap
-        appended = end == record.time[-1] and record.value[-1] == 0
         found.append(f"{len(lengths)} gaps of {lengths.sum():g} s in all, the longest from {begin:g} to {end:g} s"
-                     + (f": rest={end - begin:g} in the place of the last sample appends no force" if appended else ""))
+                     + f": rest={lengths[-1, 0]:g} appends no force in the place of the last sample" * record._appended)
     if not record.even:
         steps = numpy.diff(record.time)
         found.append(f"steps are uneven, from {steps.min():g} to {steps.max():g} s: resampled() makes them even")

@@ -19,23 +19,25 @@ OTHERS = ("n", "kn", "mn", "un", "nn", "pn", "lbf", "kgf", "pa", "kpa", "mpa", "
 _WORDS = (("milliseconds?|millisec|millis|msecs?", "ms"), ("microseconds?|microsec|micros|usecs?", "us"),
           ("nanoseconds?|nanosec|nsecs?", "ns"), ("seconds?|secs?|sekunden?|secondes?|segundos?|secondi", "s"),
           ("minutes?|mins?|minuten", "min"), ("hours?|hrs?|stunden?|heures?", "h"), ("days?|tage?|jours?", "d"),
-          ("centimet(?:er|re)s?", "cm"), ("millimet(?:er|re)s?", "mm"), ("micromet(?:er|re)s?|microns?", "um"),
+          ("centimet(?:er|re)s?|cms", "cm"), ("millimet(?:er|re)s?", "mm"), ("micromet(?:er|re)s?|microns?", "um"),
           ("nanomet(?:er|re)s?", "nm"), ("kilomet(?:er|re)s?", "km"), ("met(?:er|re)s?", "m"), ("feet|foot", "ft"),
-          ("inch(?:es)?", "in"), ("milli-?g", "mg"), ("micro-?g", "ug"), ("milli-?gals?", "mgal"), ("gals", "gal"),
+          ("inch(?:es)?", "in"), ("milli[- ]?g", "mg"), ("micro[- ]?g", "ug"), ("milli-?gals?", "mgal"), ("gals", "gal"),
           ("kilonewtons?", "kn"), ("millinewtons?", "mn"), ("newtons?", "n"), ("m(?:illi)?volts?", "mv"), ("volts?", "v"),
           ("g's", "g"), ("squared?|sq", "^2"), ("per", "/"))
+# Ends of units by time, as in "cm s-2", "m/s/s", "cm/s 2" and "acc_mps2".
+_RATES = ((r"[\s.]?s\^?-2|/s(?:/s|\s?\^?2)|_?(?:p?s2|_s2|pss|ss)", "/s^2"), (r"[\s.]?s\^?-1|_?ps", "/s"))
 
 
 def plain_unit(text: str) -> str:
     """A unit in one spelling: "CM/SEC/SEC", "cm/s2", "cm s^-2" and "centimetres per second squared" are cm/s^2."""
     text = re.sub(r"[µμ]", "u", text.strip().lower()).replace("²", "^2").replace("⁻", "^-").replace("^-^2", "^-2")
-    text = text.rstrip(".").replace("**", "^").replace("·", " ").replace("*", " ")
+    text = re.sub(r"(?<=[a-z])\.(?=\W|\d|$)|[{}()]|^in (?!s)", "", text.replace("**", "^")).replace("·", " ").replace("*", " ")
     for words, unit in _WORDS:
         text = re.sub(rf"(?<![a-z])(?:{words})(?![a-z])", unit, text)
-    text = re.sub(r"\s*([/^])\s*", r"\1", text.replace("{", "").replace("}", "").replace("(s^2)", "s^2")).strip()
-    text = re.sub(r"^([a-z]+)[\s.]?s(?:\^?-2)$", r"\1/s^2", text)
-    text = re.sub(r"^([a-z]+)[\s.]?s(?:\^?-1)$", r"\1/s", text)
-    return re.sub(r"^([a-z]+)/\(?s\)?(?:/s|\s?\^?2)$", r"\1/s^2", text)
+    text = re.sub(r"\s*([/^])\s*", r"\1", text).strip()
+    for form, end in _RATES:
+        text = re.sub(rf"^([a-z]+?)(?:{form})$", rf"\1{end}", text)
+    return text
 
 
 def kind_of(unit: str) -> str:

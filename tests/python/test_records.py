@@ -143,6 +143,7 @@ class Text(Case):
         self.refused("is empty", "\n\n")
         self.refused(r"time\[2\] = 1: must be above time\[1\] = 1; sort", "t,a\n0,1\n1,2\n1,3\n")
         self.refused("binary, in no known format", b"\0\1\2" * 50, "a.sac")
+        self.refused("is packed, or a spreadsheet: unpack it", b"PK\3\4" + b"\0\1\2" * 50, "a.zip")
         self.assertRaisesRegex(FileNotFoundError, "none.csv: no such file", stickslip.read_record, self.folder / "none.csv")
 
     def test_gaps_missing_values_and_drift(self):
@@ -160,6 +161,17 @@ class Text(Case):
         self.assertLess(error, 0.5)
         self.assertIn("drifts by", str(self.read("t,a\n" + "".join(f"{t:.2f},{v}\n" for t, v in zip(time, noise + time / 20)))))
         self.assertNotIn("drift", str(self.read("t,a\n" + "".join(f"{t:.2f},{v}\n" for t, v in zip(time, noise)))))
+
+    def test_a_bad_line_of_many_numbers_takes_no_time(self):
+        """A pattern that reads digits in several ways would try 6^40 of them before it gives up."""
+        self.refused("", "x\n" + "123456 " * 40 + "?\n" + "1 2 3\n" * 3, layout="rows", column=5)
+
+    def test_marks_of_missing_values(self):
+        for mark in ("9999", "-999.25", "99999.9"):
+            marked = columns(head="t,a [g]").replace("0.1250", mark)
+            self.assertRegex(" ".join(self.read(marked).notes), f"1 samples are {mark.strip('-')} in size, as marks of missing")
+            self.assertIn("1 samples are no numbers", str(self.read(marked.replace(mark, "nan"))))
+        self.assertNotIn("marks", str(self.read(columns().replace("0.1250", "999").replace("2.2500", "-800"))))
 
     def test_uneven_steps(self):
         time = numpy.cumsum(1 + 0.3 * numpy.sin(numpy.arange(100.0)))
@@ -237,9 +249,11 @@ class Descriptions(Case):
 
     def cosmos(self, values=VALUE, step=20.0, text=13, counts=(100, 100), form=("5F15.6", "15.6f", 5),
                samples=("8F10.5", "10.5f", 8),
-               seconds=0, what="acceleration", unit="cm/sec2(04)", direction="90 Deg", recorder=-999.0, duration=-999.0):
+               seconds=0, what="acceleration", unit="cm/sec2(04)", direction="90 Deg", recorder=-999.0, duration=-999.0,
+               facts=None):
         real = numpy.full(counts[1], -999.0)
-        real[[33, 61, 62]] = recorder, step, duration
+        for place, value in {33: recorder, 61: step, 62: duration, **(facts or {})}.items():
+            real[place] = value
         words = [f"Corrected acceleration    (Format v01.20 with {text:2d} text lines)", *["words, 1 to 2 of 3"] * (text - 1)]
         words[8] = f"Sta Chan   1: {direction} (Rcrdr Chan  1) Location: Roof" if direction else words[8]
         integers = fixed([-999] * counts[0], "8d", 10)
@@ -260,6 +274,12 @@ class Descriptions(Case):
         self.same(self.read(self.cosmos(numpy.round(1e6 * VALUE), samples=("10I8", "8.0f", 10), what="raw accel.  ",
                                         unit="counts (50)"),
                             "c.V0c"), "counts", 1e6)
+        raw = {"samples": ("10I8", "8.0f", 10), "what": "raw accel.  ", "unit": "counts (50)"}
+        for facts, factor in (((0.298, 1.25, -999), 1), ((0.5, 2.5, 4), 0.5 / 2.5 / 4 / 0.298 * 1.25)):
+            text = self.cosmos(numpy.round(1e6 * VALUE), facts=dict(zip((21, 41, 46), facts)), **raw)
+            record = self.read(text, "c.V0c")
+            self.same(record, "m/s^2", 0.298 / 1.25 * G * factor)
+            self.assertRegex(" ".join(record.notes), f"counts became g: times {facts[0]} uV over {facts[1]} V/g")
         self.same(self.read(self.cosmos(step=-999.0, recorder=0.02), "d.v2"), "m/s^2", 0.01, within=1e-7)
         two = self.cosmos() + self.cosmos(-VALUE, direction="Up")
         self.refused(r"2 columns of values; take one of 0 \(Chan 1: 90 Deg\), 1 \(Chan 1: Up\)", two, "e.v2")
@@ -313,6 +333,20 @@ class Descriptions(Case):
                                                                                                        8) + "/& ---\n"
         self.same(self.read(new, "a.V1"), "m/s^2", G)
         time = 99.96 + TIME  # seven characters without a blank
+        caltech = ("FILE     0 OF UNCORRECTED ACCELEROGRAM DATA OF VOLUME I:\nwords   21\nCOMP S05W    9\n"
+                   "NO. OF POINTS =      8      DURATION =    .160 SEC\nUNITS ARE SEC AND G/10    22\n" + fixed([1] * 100, "5d", 16)
+                   + fixed([2.5] * 50, "10.3f", 8))
+        record = self.read(caltech + fixed(numpy.column_stack([TIME, VALUE]).ravel(), "8.3f", 10), "c.e0a")
+        self.same(record, "m/s^2", G / 10, within=1e-3 * G)
+        self.assertIn("column S05W", record.source)
+        rounded = fixed(numpy.column_stack([[0, 0.02, 0.02, *TIME[3:]], VALUE]).ravel(), "8.3f", 10)
+        record = self.read(caltech + rounded, "d.e0a")
+        self.same(record, "m/s^2", G / 10, numpy.delete(TIME, 2), numpy.delete(VALUE, 2), 1e-3 * G)
+        self.assertIn("1 samples at the times of others, which are rounded, were left out", record.notes)
+        second = ("CORRECTED ACCELEROGRAM  IIB 87.420.0 COMP S05W\n" + caltech + "PEAK ACCELERATION =   2.25 CMS/SEC/SEC AT .1 SEC.\n"
+                  "     8 POINTS OF ACC DATA EQUALLY SPACED AT   .020 SEC.\n" + fixed(VALUE, "10.4f", 8)
+                  + "     8 POINTS OF VEL DATA EQUALLY SPACED AT   .020 SEC.\n" + fixed(7 * VALUE, "10.4f", 8))
+        self.same(self.read(second, "e.s0a"), "m/s^2", 0.01)
         pairs = fixed(numpy.column_stack([time, 10 * VALUE]).ravel(), "7.3f", 10)
         old = head.format(8).upper() + "UNITS OF UNCOR ACCEL ARE SEC AND G/10.   MAX = 1 G\n" + numbers + pairs + "/& ---\n"
         self.same(self.read(old, "b.RAW"), "m/s^2", G, time=time, within=1e-3 * G)
@@ -368,6 +402,11 @@ class Descriptions(Case):
         self.assertIn("column 360", record.source)
         pairs = numpy.column_stack([TIME, VALUE]).ravel()
         self.same(self.read(self.smc(pairs, "1 UNCORRECTED ACCELEROGRAM", 1.7e38, 11), "b.smc"), "m/s^2", 0.01, within=1e-7)
+        remains = "\0" * 40 + "\r\n" + fixed([9.75, -1] * 4, "10.4f", 8)
+        long = numpy.tile(VALUE, 4000)
+        self.same(self.read(self.smc(long) + remains, "e.smc"), "m/s^2", 0.01, 0.02 * numpy.arange(len(long)), long, 1e-7)
+        self.same(self.read(self.smc(VALUE, "0 UNKNOWN"), "f.smc", unit="gal"), "m/s^2", 0.01, within=1e-7)
+        self.refused("is a spectrum", self.smc(VALUE, "5 RESPONSE"), "g.smc")
         self.refused("holds 7 of the 8 samples", self.smc(VALUE).replace(" 6.2500E-2", ""), "c.smc")
         self.refused("360: is a velocity, no force or acceleration; differentiate=True", self.smc(VALUE, "3 VELOCITY"), "d.smc")
 
@@ -390,9 +429,24 @@ class Descriptions(Case):
                      self.knet(rate="50Hz", counts=many).replace("Time(s)  10", "Time(s)  99"), "b.EW")
         self.refused('no whole file of K-NET or KiK-net, which has a line "Scale Factor"',
                      self.knet().replace("Scale Factor", "Scale"), "c.EW")
-        csv = "#Sampling Freq(Hz),50\n#Time,NS(gal),EW(gal),UD(gal)\n" + "".join(
-            f"2001/01/01 23:59:59.{round(900 + 20 * n):03d},{v},{-v},{2 * v}\n" for n, v in enumerate(VALUE[:5]))
-        self.same(self.read(csv, "d.csv", channel="EW"), "m/s^2", -0.01, TIME[:5], VALUE[:5])
+
+    def test_csv_of_knet(self):
+        """As the agency writes it, a value below its key, and in a short form; the samples have an offset there, too."""
+        way = ("N-S", "E-W", "U-D")
+        for names, head, clock in (
+                (way, "#K-NET CSV\n#Event\n#OriginTime,Latitude\n#2019/01/02 17:47:00,36.708\n#Record\n#SamplingFrequency(Hz)\n"
+                 "#50\n#DurationTime(s)\n#0\n#Offset\n#N-S(gal),E-W(gal),U-D(gal)\n#-18.60,-1.40,26.10\n"
+                 "#Time,RelativeTime(s),N-S(gal),E-W(gal),U-D(gal)\n", ",{:.2f}"),
+                (range(1, 7), "#K-NET CSV\n#SamplingFrequency(Hz)\n#50\n#Time,RelativeTime(s),1(gal),2(gal),3(gal),4(gal),5(gal),"
+                 "6(gal)\n", ",{:.2f}"),
+                (way, "#Sampling Freq(Hz),50\n#Time,N-S(gal),E-W(gal),U-D(gal)\n", "")):
+            text = head + "".join(f"2001/01/01 23:59:59.{20 * n + 90:03d}{clock.format(0.02 * n)},"
+                                  + ",".join(f"{v * (n + 1) + 7}" for n in range(len(names))) + "\n" for n, v in enumerate(VALUE))
+            record = self.read(text, "a.csv", channel="E-W" if len(names) == 3 else "E-W surface")
+            self.same(record, "m/s^2", 0.02 if len(names) == 3 else 0.05, value=VALUE - VALUE.mean())
+            self.assertRegex(" ".join(record.notes), "the mean, .* gal, was taken off")
+        self.refused("does not make 7 samples last 0.14 s", text.replace("Freq(Hz),50", "Freq(Hz),100"), "b.csv", column=0)
+        self.refused('no whole file of CSV of K-NET or KiK-net, which has a line "#Sampling', text.replace("Freq", ""), "c.csv")
 
     def cwa(self, sequence="Time U(+); N(+); E(+)", form="4F10.3", unit="gal. DCoffset(corr)"):
         rows = [[t] * ("Time" in sequence) + [v, 2 * v, 3 * v] for t, v in zip(TIME, numpy.round(VALUE, 3))]
@@ -425,6 +479,18 @@ class Descriptions(Case):
                  ": 8\nSAMPLING INTERVAL (sec) : 0.02\nRAW PGA VALUES (gal)    : (N-S) 13.2 (E-W) 12.1 (U-D) 9.8\nCopyright\n"
                  "       N-S          E-W          U-D\n" + "".join(fixed([v, -v, 2 * v], "13.6f", 3) for v in VALUE))
         self.same(self.read(older, "g.txt", channel="E-W"), "m/s^2", -0.01, within=1e-9)
+        other = older.replace("N-S          E-W          U-D", "NS  EW  UD").replace("INTERVAL (sec) :", "INTERVAL :")
+        self.same(self.read(other, "h.txt", channel="UD"), "m/s^2", 0.02, within=1e-9)
+
+    def test_csmnc(self):
+        head = ("065JZC120103153901\n0120103153957 2012-01-03 15:39:57 BTM\nMAGNITUDE  4.0(Ms)\nCOMP. {}\n"
+                "UNCORRECTED {}          UNIT: {}\nNO. OF POINTS:  {}  EQUALLY SPACED INTERVALS OF:  {}  SEC\n"
+                "PEAK VALUE:    2.25   AT   .1 SEC    DURATION:  1 SEC\nCSMNC\n\n")
+        for unit, wide, factor in (("CM/SEC/SEC", 8, 0.01), ("g", 5, G)):
+            text = head.format("EW", "ACCELERATION", unit, 8, "0.02") + fixed(VALUE, "14.6E", wide)
+            self.same(self.read(text, "a.dat"), "m/s^2", factor, within=1e-6)
+        self.refused("EW: is a velocity", text.replace("ACCELERATION", "VELOCITY").replace(": g", ": cm/s"), "b.dat")
+        self.refused("holds 8 of the 9 samples", text.replace("POINTS:  8", "POINTS:  9"), "c.dat")
 
     def test_geocsv_and_time_series(self):
         stamps = [f"2001-01-01T23:59:59.{900000 + 20000 * n:06d}" for n in range(5)]
@@ -434,7 +500,7 @@ class Descriptions(Case):
         geo = "# dataset: GeoCSV 2.0\n# delimiter: ,\n# field_unit: {}, m/s**2\n# field_type: datetime, float\nTime, Sample\n"
         single = ("# dataset: GeoCSV 2.0\n# SID: A_B\n# sample_count: 5\n# sample_rate_hz: 50\n# start_time: 2001-01-01T00:00:00.5Z\n"
                   "# field_unit: m/s**2\n# field_type: float\nSample\n" + "".join(f"{v}\n" for v in VALUE[:5]))
-        for text in (head.format(5, "TSPAIR", "m/s**2") + "".join(pairs),
+        for text in (head.format(5, "TSPAIR", "m/s**2") + "".join(pairs), (geo.format("ISO_8601") + comma).upper(),
                      head.format(5, "SLIST", "M/S**2") + "0.1\t-0.25\t0.5\n0.125\t-1.5\n",
                      geo.format("ISO_8601") + comma, geo.format("UTC") + comma, single,
                      head.format(2, "TSPAIR", "m/s**2") + "".join(pairs[:2]) + head.format(3, "TSPAIR",
@@ -452,8 +518,10 @@ class Descriptions(Case):
             return f"PEER\nSomewhere, 1/2/1999, Hill, 90\n{line}\nNPTS=     8, DT=   .0200 SEC,\n" + fixed(VALUE, "15.7E", 5)
 
         for line in ("The units are (g)", "ACCELERATION TIME HISTORY IN UNITS OF (G)", "Units: g",
-                     "ACCELERATION IN UNITS OF G."):
+                     "ACCELERATION IN UNITS OF G.", "Acceleration in g"):
             self.same(self.read(text(line), "a.AT2"), "m/s^2", G, within=1e-6)
+        for step in ("DT= 20 MSEC", "dt=20 ms", "DT=.02", "DT= 2.0E-02 SEC"):
+            self.same(self.read(text(line).replace("DT=   .0200 SEC", step), "a.AT2"), "m/s^2", G, within=1e-6)
         self.refused("is a velocity, no force or acceleration; differentiate=True takes its derivative",
                      text("VELOCITY TIME SERIES IN UNITS OF CM/S"),
                      "a.VT2")
@@ -462,6 +530,18 @@ class Descriptions(Case):
         self.refused("unit = g: is one of acceleration, and the file says that velocity is a velocity",
                      text("VELOCITY TIME SERIES IN UNITS OF CM/S"),
                      "b.VT2", unit="g")
+
+    def test_blank_lines_and_doubled_ends(self):
+        text = "PEER\nSomewhere, 1940\nACCELERATION TIME SERIES IN UNITS OF G\nNPTS=     8, DT=   .0200 SEC\n" + fixed(VALUE, "15.7E", 5)
+        for end in ("\r\n", "\r\r\n", "  \r\n", "\n\n"):
+            self.same(self.read(text.replace("\n", end), "a.AT2"), "m/s^2", G, within=1e-6)
+
+    def test_spectra(self):
+        first = "Response and Fourier amplitude spectra (86 periods,  .04 - 10.0 sec)   for\n"
+        self.refused("holds spectra, no force", first + self.csmip(VALUE), "a.V3")
+        for name in ("Period [s]", "period (s)", "Frequency [Hz]"):
+            self.refused("a spectrum is no force or acceleration over time", columns(head=f"{name},Sa [g]"))
+        self.same(self.read(columns(head="Period [s],a [g]"), time=0), "m/s^2", G)
 
     def test_derivatives(self):
         """Of t^2 cm/s and t^2 cm by t, with even and uneven steps: 2 t cm/s^2 and 2 cm/s^2."""
@@ -505,6 +585,8 @@ class Times(Case):
         stamps = "timestamp,F\n" + "".join(f"{1700000000000 + 20 * n},{v}\n" for n, v in enumerate(VALUE))
         self.refused('begins at 1700000000000 without a unit; give time_unit="ms"', stamps)
         self.same(self.read(stamps, time_unit="ms"))
+        for name in ("Sample no.", "#", "", "Unnamed: 0", "index"):
+            self.refused("counts samples; give the sampling interval", columns(head=f"{name},F"))
         counts = "sample,F\n" + "".join(f"{n},{v}\n" for n, v in enumerate(VALUE))
         self.refused("sample: counts samples; give the sampling interval", counts)
         self.same(self.read(counts, step=0.02, column="F"))
@@ -520,6 +602,10 @@ class Times(Case):
         self.same(self.read("# peaks: 1 2\n# t N E\n" + body, column="N"))
         self.refused("no such column.*2 lines could name", "# t E N\n# U N E\n" + body, column="E")
         self.same(self.read("made up, twice\nTime [ms],F [N]\n" + columns()), "N", time=TIME / 1000)
+        self.same(self.read("ms,g\nTime,Acc\n" + columns()), "m/s^2", G, time=TIME / 1000)
+        self.refused("time_unit: 3 lines could name", "Time,Acc\ns,g\nms,gal\n" + columns())
+        self.same(self.read(columns(head="time_ms,acc_cm_s2")), "m/s^2", 0.01, time=TIME / 1000)
+        self.same(self.read(columns(head="t [s],a [cm/(s^2)]")), "m/s^2", 0.01)
         self.refused("no such column", "t [ms] E N\nmore of it\n" + body, column="E")
 
     def test_dates_count_from_the_first_sample(self):
@@ -550,6 +636,20 @@ class Rows(Case):
         self.same(self.read("24 0.02\n" + text, layout="rows", step=0.02, column=1), time=0.02 * numpy.arange(24), value=long)
         self.refused("layout = 'row': must be one of columns, rows, pairs", text, layout="row")
 
+    def test_rows_as_wide_as_those_of_other_formats(self):
+        """Five numbers of 15 characters begin a SAC file, too; as many words as numbers above the rows name no columns."""
+        long = numpy.tile(VALUE, 20)
+        rows = fixed(long, "15.7E", 5)
+        for text in (rows, "points= 160, step= 0.02 sec\n" + rows, "El Centro 1940 N-S component\n" + rows):
+            for options in ({}, {"step": 0.02}, {"step": 0.02, "column": 0}):
+                self.refused("layout", text, "a.g3", **options)
+            self.same(self.read(text, "b.g3", layout="rows", step=0.02), time=0.02 * numpy.arange(160), value=long, within=1e-6)
+
+    def test_what_cannot_be_read_says_what_can(self):
+        text = "* VOL1\nUNITS\n" + fixed(VALUE, "12.5f", 4) + "/&\n"
+        self.refused(r'no numbers in columns.*layout="rows" .* with step=, unit= and column= of 0 \(UNITS: 8\)', text)
+        self.same(self.read(text, layout="rows", step=0.02, unit="gal", column=0), "m/s^2", 0.01)
+
     def test_pairs_of_time_and_sample(self):
         text = fixed(numpy.column_stack([TIME, VALUE]).ravel(), "10.4f", 6)
         self.refused('layout="pairs" pairs of time and value', text[:120])
@@ -561,6 +661,12 @@ class Rows(Case):
         record = self.read(columns(head="t [s],F [N]"), rest=0.1)
         self.same(record, "N", time=0.02 * numpy.arange(13), value=numpy.append(VALUE, numpy.zeros(5)))
         self.assertIn("0.1 s of no force were appended", str(record))
+        appended = columns(head="t [s],F [N]") + "10.14,0\n"
+        self.assertIn("rest=10 appends no force in the place of the last sample", str(self.read(appended)))
+        for rest, count in ((10, 508), (0.1, 13)):
+            record = self.read(appended, rest=rest)
+            self.same(record, "N", time=0.02 * numpy.arange(count), value=numpy.append(VALUE, numpy.zeros(count - 8)))
+            self.assertEqual(len(record.gaps), 0)
         with self.assertRaisesRegex(ValueError, r"rest = -1: must be in \[0, inf\)"):
             self.read(columns(), rest=-1)
 
@@ -589,8 +695,9 @@ class Readers(Case):
     def test_units_of_every_spelling(self):
         for spellings, factor in ((("g", "G", "g.", "g's"), G), (("milli-g", "mg"), G / 1000),
                                   (("gal", "Gals", "cm/sec2", "cm/s/s", "CM/SEC/SEC",
-                                  "cm s-2", "cm·s⁻²", "cm/s^{2}", "cm.s^-2", "centimetres per second squared"), 0.01),
-                                  (("m/s²", "m/s**2", "m / s^2", "m/sec/sec", "meters/second^2", "m s⁻²"), 1),
+                                  "cm s-2", "cm·s⁻²", "cm/s^{2}", "cm.s^-2", "centimetres per second squared", "cm/sec.^2",
+                                  "cm/(s^2)", "cm_s2", "cmss", "in gal"), 0.01),
+                                  (("m/s²", "m/s**2", "m / s^2", "m/sec/sec", "meters/second^2", "m s⁻²", "mps2", "ms2"), 1),
                                   (("ft/sec^2",), 0.3048)):
             for unit in spellings:
                 self.same(self.read(columns(), unit=unit), "m/s^2", factor)

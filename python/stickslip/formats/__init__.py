@@ -5,6 +5,7 @@ is guessed from it; `layout` then reads the numbers alone.
 """
 
 import pathlib
+import re
 
 from . import agencies, arrays, cosmos, csmip, fdsn, geonet, peer, smc, tables
 from .reading import Column, Format, numeric
@@ -12,6 +13,7 @@ from .reading import Column, Format, numeric
 FORMATS: tuple[Format, ...] = (peer.FORMAT, cosmos.FORMAT, csmip.FORMAT, geonet.FORMAT, smc.FORMAT, *agencies.FORMATS,
                                *fdsn.FORMATS)
 NAMES = ", ".join(["text with columns", *(form.name for form in FORMATS), "SAC", "MiniSEED (by ObsPy)", ".npy", ".mat"])
+SPECTRA = re.compile(r"\A.*\bspectr(?:a|um)\b", re.IGNORECASE)
 LAYOUTS = ("columns", "rows", "pairs")
 
 
@@ -30,31 +32,30 @@ def columns_of(path: pathlib.Path, layout: str | None = None, delimiter: str | N
     if found := arrays.columns_of(path, data):
         return found
     wide = data.startswith((b"\xff\xfe", b"\xfe\xff"))
-    text = data.decode("utf-16" if wide else "utf-8-sig", errors="replace").replace("\r\n", "\n").replace("\r", "\n")
-    lines = text.rstrip("\n\x1a").split("\n")
-    if arrays.is_sac(lines[:5]):
+    text = data.decode("utf-16" if wide else "utf-8-sig", errors="replace").replace("\0", " ")
+    lines = re.sub(r"\r*\n|\r", "\n", text).rstrip(" \n\x1a").split("\n")
+    if arrays.is_sac(lines):
         return "SAC", [arrays.of_sac(lines)]
-    words = "\n".join(line for line in lines if not numeric(line))
+    words = "\n".join(line for line in lines if line.strip() and not numeric(line))
     missing = {form: form.missing(words) for form in FORMATS}
     known = next((form for form, lacking in missing.items() if not lacking), None)
-    if known and not layout:
-        try:
-            return known.name, _wanted(known.read(lines))
-        except (ValueError, IndexError, KeyError, StopIteration) as problem:
-            said = str(problem) if isinstance(problem, ValueError) else "its header ends too early"
-            raise ValueError(f"{known.name}: {said}; fetch it anew, or read its numbers alone: {tables.ways(lines)}") from None
     nearest = max(FORMATS, key=lambda form: len(form.signs) - len(missing[form]))
     share = 1 - len(missing[nearest]) / len(nearest.signs)
-    if share >= 0.5 and not layout:
-        raise ValueError(f"is no whole file of {nearest.name}, which has {' and '.join(missing[nearest])}; fetch it anew, or "
-                         f"read its numbers alone: {tables.ways(lines)}")
     try:
-        return "text", tables.columns_of(lines, layout, delimiter, decimal)
-    except ValueError as problem:
-        lacking = f"nearest is {nearest.name}, which has {' and '.join(missing[nearest])}" if share else f"is none of {NAMES}"
-        raise ValueError(f"{problem}; {lacking}" if "no numbers in columns" in str(problem) else str(problem)) from None
-
-
-def _wanted(columns: list[Column]) -> list[Column]:
-    """The accelerations where there are some, else all."""
-    return [column for column in columns if column.kind == "acceleration"] or columns
+        if layout or share < 0.5:
+            return "text", tables.columns_of(lines, layout, delimiter, decimal)
+        if SPECTRA.search(words):
+            raise ValueError("holds spectra, no force or acceleration over time; take the file of the acceleration")
+        if not known:
+            raise ValueError(f"is no whole file of {nearest.name}, which has {' and '.join(missing[nearest])}")
+        if columns := known.read(lines):
+            return known.name, [column for column in columns if column.kind == "acceleration"] or columns
+        raise ValueError("no samples below its header")
+    except (ValueError, IndexError, KeyError, StopIteration) as problem:
+        said = str(problem) if isinstance(problem, ValueError) else "its header ends too early"
+        if any(word in said for word in ("layout", "spectra", "empty")):
+            raise
+    if "no numbers" in said and not known:
+        said += f"; nearest is {nearest.name}, which has {' and '.join(missing[nearest])}" if share else f"; is none of {NAMES}"
+    raise ValueError(f"{f'{known.name}: ' if known and not layout else ''}{said}; fetch it anew, or read its numbers alone: "
+                     f"{tables.ways(lines)}")

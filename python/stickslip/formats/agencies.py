@@ -1,70 +1,93 @@
-"""Formats with a header "key value" above plain samples.
+"""Formats with a header of facts above plain samples, each a table of its facts.
 
-K-NET and KiK-net of NIED (Japan); the free-field text of CWA (Taiwan); ESM and the newer files of AFAD (DYNA 1.2); the older
-files of AFAD (Turkey), three components a file.
+K-NET and KiK-net of NIED (Japan), and their CSV; the free-field text of CWA (Taiwan); ESM and the newer files of AFAD (DYNA
+1.2); the older files of AFAD (Turkey), three components a file; CSMNC (China).
 """
 
+import functools
 import re
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
-from .reading import Column, Format, counted, data_of, keys, kind_in, lasting, numbers, table
+from ..units import in_si, kind_of
+from . import tables
+from .reading import FLAGS, Column, Format, counted, data_of, kind_in, lasting, numbers, table
 
+if TYPE_CHECKING:
+    import numpy
+    Array = numpy.ndarray
+
+HEADER = 200  # lines that may belong to the header
+NUMBER, WORD, REST = r"[ \t:]*([\d.]+)", r"[ \t:]*([^\s;,]+)", r"[ \t:]*(.*?)[ \t]*$"
 PLACES = {f"{n + 1}": f"{way} {place}" for n, (place, way) in enumerate(
     (place, way) for place in ("borehole", "surface") for way in ("N-S", "E-W", "U-D"))}  # of KiK-net
+OFFSET = "the mean, {:.4g} {}, was taken off, as samples of this format have an arbitrary offset"
 
 
-def _nied(lines: list[str]) -> list[Column]:
-    said = {name: re.search(pattern, "\n".join(lines[:40]), re.MULTILINE | re.IGNORECASE) for name, pattern in (
-        ("rate", r"^Sampling Freq\(Hz\)\s+([\d.]+)"), ("seconds", r"^Duration Time\(s\)\s+([\d.]+)"),
-        ("direction", r"^Dir\.\s+(\S+)"), ("scale", r"^Scale Factor\s+([\d.]+)\s*\((\S+?)\)\s*/\s*([\d.]+)"))}
-    wrong = [name for name, found in said.items() if not found]
-    if wrong:
-        raise ValueError(f"header: {', '.join(wrong)} cannot be read")
-    at = next(n for n, line in enumerate(lines) if line.lower().startswith("memo"))
-    values = numbers([line for line in lines[at + 1:] if line.strip()]) * float(said["scale"][1]) / float(said["scale"][3])
-    step = 1 / float(said["rate"][1])
-    doubt = lasting(step, len(values), float(said["seconds"][1]), 1)
-    if doubt:
-        raise ValueError(f"{doubt}")
-    mean, unit = values.mean(), said["scale"][2]
-    return [Column(PLACES.get(said["direction"][1], said["direction"][1]), values - mean, unit, step, kind="acceleration",
-                   notes=(f"the mean, {mean:.4g} {unit}, was taken off, as samples of this format have an arbitrary offset",))]
+def _less_mean(name: str, values: "Array", unit: str, step: float, doubt: str) -> Column:
+    mean = values.mean()
+    return Column(PLACES.get(name, name), values - mean, unit, None if doubt else step, kind="acceleration", doubt=doubt,
+                  notes=(OFFSET.format(mean, unit),))
 
 
-def _cwa(lines: list[str]) -> list[Column]:
-    said, data = keys(lines), data_of(lines)
-    names = [name for name in re.split(r"[;,\s]+", said["DATASEQUENCE"]) if name]
-    unit, rate = re.split(r"[\s;,]", said["AMPLITUDEUNIT"])[0], float(said["SAMPLERATE(HZ)"])
-    columns = dict(zip(names, table(data, len(names), said.get("DATA", ""))))
+def _read(facts: Sequence[tuple[str, str]], lines: list[str]) -> list[Column]:
+    found = [(fact, n, match[1]) for fact, pattern in facts for n, line in enumerate(lines[:HEADER])
+             if (match := re.search(pattern, line, FLAGS))]
+    said, data = {fact: value for fact, _, value in reversed(found)}, data_of(lines[max(n for _, n, _ in found) + 1:])
+    kind = said.get("kind", "acceleration").lower()
+    kind = "spectrum" if "spectr" in kind else kind_in(kind)
+    step = float(said["step"]) if "step" in said else 1 / float(said["rate"])
+    names = re.split(r"[;,\s]+", said["names"]) if "names" in said else [said.get("name") or kind]
+    columns = dict(zip(names, table(data, len(names), said.get("form", "")) if "names" in said else [numbers(data)]))
     times = next((columns.pop(name) for name in names if name.lower() == "time"), None)
-    stated = float(said.get("RECORDLENGTH(SEC)", len(data) / rate))
-    doubt = lasting(1 / rate, len(data), stated, 1) or (
-        times is not None and lasting(1 / rate, len(data) - 1, times[-1] - times[0], 0.01)) or ""
-    return [Column(name, values, unit, None if doubt else 1 / rate, kind="acceleration", doubt=doubt)
+    count = len(next(iter(columns.values())))
+    if "count" in said:
+        counted(next(iter(columns.values())), int(said["count"]))
+    doubt = ("seconds" in said and lasting(step, count, float(said["seconds"]), 0.5 + step)
+             or times is not None and lasting(step, count - 1, times[-1] - times[0], 0.01) or "")
+    if "scale" in said:
+        counts, unit, most = re.split(r"[()]\s*/?\s*", said["scale"])
+        return [_less_mean(name, values * float(counts) / float(most), unit, step, doubt) for name, values in columns.items()]
+    return [Column(name, values, said.get("unit", "").lower(), None if doubt else step, kind=kind, doubt=doubt)
             for name, values in columns.items()]
 
 
-def _dyna(lines: list[str]) -> list[Column]:
-    said = keys(lines)
-    kind = said.get("DATA_TYPE", "ACCELERATION").lower()
-    values, = table(data_of(lines), 1)
-    return [Column(said.get("STREAM") or kind, counted(values, int(said["NDATA"])), said["UNITS"],
-                   float(said["SAMPLING_INTERVAL_S"]), kind=kind_in(kind) if "spectr" not in kind else "spectrum")]
+def _csv_of_nied(lines: list[str]) -> list[Column]:
+    """Of the lines "#SamplingFrequency(Hz)" and "#DurationTime(s)" the value stands in the line below, or behind a comma."""
+    words = "\n".join(lines[:HEADER])
+    rate, seconds = (re.search(rf"^#\s*{key}\s?\(\w+\)[,\s#]*([\d.]+)", words, FLAGS)
+                     for key in (r"Sampling\s?Freq(?:uency)?", r"Duration\s?Time"))
+    columns, step = tables.columns_of(lines, None, ",", None), 1 / float(rate[1])
+    times = columns[0].values * in_si(columns[0].unit)[0]
+    doubt = lasting(step, len(times) - 1, times[-1] - times[0], 0.009) or (
+        lasting(step, len(times), float(seconds[1]), 0.5 + step) if seconds else "")
+    return [_less_mean(column.name, column.values, column.unit, step, doubt) for column in columns
+            if kind_of(column.unit) == "acceleration"]
 
 
-def _afad(lines: list[str]) -> list[Column]:
-    said, data = keys(lines), data_of(lines)
-    names = [line for line in lines[:lines.index(data[0])] if line.strip()][-1].split()
-    unit = next((found[1].lower() for key in said if (found := re.search(r"PGA.*\((\S+)\)", key))), "")
-    step = float(next(value for key, value in said.items() if key.startswith("SAMPLING INTERVAL")))
-    columns = table(data, len(names))
-    counted(columns[0], int(said["NUMBER OF DATA"]))
-    return [Column(name, values, unit, step, kind="acceleration") for name, values in zip(names, columns)]
+def _keyed(name: str, lead: str, keys: Sequence[tuple[str, str, str]], also: Sequence[tuple[str, str]] = ()) -> Format:
+    """A format whose header has a line for each of some keys: facts, keys, and patterns behind them; others may be absent."""
+    patterns = [(fact, rf"^{lead}\s*{re.escape(key)}{rest}") for fact, key, rest in keys]
+    return Format(name, {f'a line "{lead}{key}"': pattern for (_, key, _), (_, pattern) in zip(keys, patterns)},
+                  functools.partial(_read, [*patterns, *also]))
 
 
 FORMATS = (
-    Format("K-NET or KiK-net", {f'a line "{key}"': "^" + re.escape(key) for key in (
-        "Sampling Freq(Hz)", "Duration Time(s)", "Dir.", "Scale Factor", "Memo.")}, _nied),
-    Format("CWA", {f'a line "#{key}:"': r"^#\s*" + re.escape(key) + ":" for key in (
-        "SampleRate(Hz)", "AmplitudeUnit", "DataSequence")}, _cwa),
-    Format("ESM", {f'a line "{key}:"': f"^{key}:" for key in ("SAMPLING_INTERVAL_S", "NDATA", "UNITS")}, _dyna),
-    Format("AFAD", {f'a line "{key}"': "^" + key for key in ("NUMBER OF DATA", "SAMPLING INTERVAL")}, _afad))
+    _keyed("K-NET or KiK-net", "", (
+        ("rate", "Sampling Freq(Hz)", NUMBER), ("seconds", "Duration Time(s)", NUMBER), ("name", "Dir.", WORD),
+        ("scale", "Scale Factor", r"\s*([\d.]+\s*\([^\s()]+\)\s*/\s*[\d.]+)"), ("", "Memo.", "()"))),
+    Format("CSV of K-NET or KiK-net", {'a line "#Sampling Freq(Hz)"': r"^#\s*Sampling\s?Freq(?:uency)?\s?\(Hz\)[,\s#]*[\d.]+",
+                                       'a line "#Time,...(gal)"': r"^#\s*Time,.*\(gal\)"}, _csv_of_nied),
+    _keyed("CWA", "#", (
+        ("rate", "SampleRate(Hz):", NUMBER), ("unit", "AmplitudeUnit:", WORD), ("names", "DataSequence:", REST)), (
+        ("seconds", rf"^#\s*RecordLength\(sec\){NUMBER}"), ("form", rf"^#\s*Data:{REST}"))),
+    _keyed("ESM", "", (
+        ("step", "SAMPLING_INTERVAL_S:", NUMBER), ("count", "NDATA:", NUMBER), ("unit", "UNITS:", WORD)), (
+        ("name", rf"^STREAM:{WORD}"), ("kind", rf"^DATA_TYPE:{REST}"), ("", "^USER5:()"))),
+    _keyed("AFAD", "", (
+        ("count", "NUMBER OF DATA", NUMBER), ("step", "SAMPLING INTERVAL", rf"[ \t]*(?:\(\w+\.?\))?{NUMBER}")), (
+        ("unit", r"^.*PGA.*?\((\w\S*?)\)\s*:"), ("names", r"^\s*([A-Z][\w-]{0,2}(?:\s+[A-Z][\w-]{0,2}){2})\s*$"))),
+    _keyed("CSMNC", "", (
+        ("name", "COMP.", WORD), ("count", "NO. OF POINTS:", NUMBER)), (
+        ("step", r"^NO\. OF POINTS:.*INTERVALS OF:\s*([\d.]+)"), ("unit", r"UNIT:\s*(\S+)"),
+        ("kind", r"^(?:un)?corrected\s+(\w+)"))))

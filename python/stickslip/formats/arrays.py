@@ -17,6 +17,7 @@ numpy = needed("numpy")
 SAC_LINES = 14, 22, 30  # where lines of numbers, of integers and of the whole header end; SAC manual, "SAC data file format"
 SAC_BYTES = 70 * 4, 110 * 4, 158 * 4
 SAC_VERSION, NONE = 76, -12345  # place of the version among the integers, which is 6 or 7; a value that is not known
+ZEROS = 1e-3  # share of zero bytes, up to which a file is text with remains of a buffer
 MINISEED = re.compile(rb"\d{6}[DRQM][ \0]|MS\x03")
 
 
@@ -37,23 +38,27 @@ def columns_of(path: pathlib.Path, data: bytes) -> tuple[str, list[Column]] | No
     if MINISEED.match(data):
         return "MiniSEED", [Column(trace.id, numpy.asarray(trace.data, float), "", float(trace.stats.delta))
                             for trace in needed("obspy").read(str(path))]
-    if b"\0" in data and not data.startswith((b"\xff\xfe", b"\xfe\xff")):
+    if data.startswith((b"PK\3\4", b"\x1f\x8b")):
+        raise ValueError("is packed, or a spreadsheet: unpack it, or save it as CSV")
+    if data.count(b"\0") > len(data) * ZEROS and not data.startswith((b"\xff\xfe", b"\xfe\xff")):
         raise ValueError("is binary, in no known format; take text, or make a stickslip.Record(time, value, unit) of what "
                          "another reader gives, such as ObsPy")
     return None
 
 
-def is_sac(head: Sequence[str]) -> bool:
-    """Whether lines are the first ones of a SAC file in alphanumeric form: five numbers each, 15 characters wide."""
-    return len(head) > 4 and all(len(line.rstrip()) == 75 and re.fullmatch(rf"(?:\s*{NUMBER}){{5}}\s*", line)
-                                 for line in head[:4])
+def is_sac(lines: Sequence[str]) -> bool:
+    """Whether lines are those of a SAC file in alphanumeric form: five numbers each, then five integers each."""
+    floats, integers = (re.compile(rf"\s*{number}(?:\s+{number}){{4}}\s*") for number in (NUMBER, r"[-+]?\d+"))
+    begins = (0, floats), (SAC_LINES[0], integers)
+    return len(lines) > SAC_LINES[2] and all(
+        form.fullmatch(line) for (begin, form), end in zip(begins, SAC_LINES) for line in lines[begin:end])
 
 
 def of_sac(lines: Sequence[str]) -> Column:
     """The samples of a SAC file in alphanumeric form."""
     floats, words, header = SAC_LINES
     integers = numbers(lines[floats:words], "5I10").astype(int)
-    return _of_sac(numbers(lines[:floats], "5G15.7"), integers, numbers([line for line in lines[header:] if line], "5G15.7"))
+    return _of_sac(numbers(lines[:floats], "5G15.7"), integers, numbers(lines[header:], "5G15.7"))
 
 
 def _of_sac(floats: "Array", integers: "Array", samples: "Array") -> Column:

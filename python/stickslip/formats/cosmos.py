@@ -2,9 +2,11 @@
 
 Each channel has lines of text, integers and numbers, whose counts and Fortran formats the lines above them state, comments,
 and samples. Of the numbers, 62 is the sampling interval of the samples in ms and 63 their duration in s; 34 is the interval
-of the recorder in s. The line above the samples has their number, about their duration, unit with its code, and format.
+of the recorder in s. Counts of an accelerometer times value 22 [uV], over value 42 [V/g] and the gain, value 47, are g. The
+line above the samples has their number, about their duration, unit with its code, and format.
 """
 
+import dataclasses
 import re
 from collections.abc import Sequence
 
@@ -17,7 +19,7 @@ SAMPLES = re.compile(r"\s*(\d+)\s+(.*?)\s*pts,\s*approx\s*([\d.]+)\s*secs,\s*uni
 DIRECTION = re.compile(r"\s*sta cha\w*:?\s*(.*?)\s*\(rcrdr", re.IGNORECASE)
 CODES = {2: "g", 4: "cm/s^2", 5: "cm/s", 6: "cm", 7: "in/s^2", 8: "in/s", 9: "in", 10: "gal", 11: "mg", 12: "ug", 50: "counts",
          51: "v", 52: "mv"}
-INTERVAL, DURATION, RECORDER = 61, 62, 33  # places among the numbers, from 0
+INTERVAL, DURATION, RECORDER, BIT, SENSITIVITY, GAIN = 61, 62, 33, 21, 41, 46  # places among the numbers, from 0
 
 
 def _step(real: Sequence[float], count: int, seconds: float) -> tuple[float, str]:
@@ -27,6 +29,15 @@ def _step(real: Sequence[float], count: int, seconds: float) -> tuple[float, str
     doubt = lasting(step, count, seconds, 1 + step) or (
         lasting(step, count, stated, 2 * step + 1e-3 * stated) if stated > 0 and place == INTERVAL else "")
     return step, f"value {place + 1} of the real header: {doubt}" if doubt else ""
+
+
+def _in_g(column: Column, real: Sequence[float]) -> Column:
+    """Counts of an accelerometer in g, if the header has what that takes."""
+    bit, sensitivity, gain = real[BIT], real[SENSITIVITY], real[GAIN] if real[GAIN] > 0 else 1
+    if plain_unit(column.unit) != "counts" or column.kind != "acceleration" or bit <= 0 or sensitivity <= 0:
+        return column
+    note = f"counts became g: times {bit:g} uV over {sensitivity:g} V/g and the gain {gain:g}, as the real header says"
+    return dataclasses.replace(column, values=column.values * (bit * 1e-6 / sensitivity / gain), unit="g", notes=(note,))
 
 
 def _read(lines: list[str]) -> list[Column]:
@@ -45,9 +56,9 @@ def _read(lines: list[str]) -> list[Column]:
                 raise ValueError(f"line {at + 1}: the unit is {unit}, its code {found[5]} stands for {code}; correct either")
             step, doubt = _step(real, count, float(found[3]))
             kind = kind_in(found[2])
-            columns.append(Column(direction or f"{kind or 'channel'} {len(columns)}",
-                                  counted(numbers(block(lines, at + 1), found[6]), count), unit, None if doubt else step,
-                                  kind=kind, doubt=doubt))
+            values = counted(numbers(block(lines, at + 1), found[6]), count)
+            columns.append(_in_g(Column(direction or f"{kind or 'channel'} {len(columns)}", values, unit,
+                                        None if doubt else step, kind=kind, doubt=doubt), real))
             real, direction = [-999.0] * 100, ""
     return columns
 

@@ -9,7 +9,8 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from ..needed import needed
-from .reading import DATE, Column, Format, counted, keys, microseconds, numbers, table
+from . import tables
+from .reading import Column, Format, counted, microseconds, numbers
 
 if TYPE_CHECKING:
     import numpy
@@ -20,59 +21,53 @@ SERIES = re.compile(r"TIMESERIES\s+(\S+),\s*(\d+) samples,\s*([\d.]+) sps,\s*([^
                     r"(?:,\s*(\S.*?))?\s*$", re.IGNORECASE)
 
 
-def from_first(name: str, unit: str, pieces: "Sequence[tuple[Array, Array]]") -> Column:
-    """A column of pieces (times [microseconds], values), with times from the first sample."""
-    times, values = (numpy.concatenate(part) for part in zip(*pieces))
-    first = numpy.datetime64(int(times[0]), "us")
-    return Column(name, values, unit, times=(times - times[0]) / 1e6, notes=(f"times are from the first sample, {first}",))
+def _joined(pieces: "Sequence[tuple[str, str, Array, Array]]") -> list[Column]:
+    """Columns of pieces (name, unit, times [microseconds], values), with times from the first sample."""
+    found = []
+    for name, unit in dict.fromkeys(piece[:2] for piece in pieces):
+        times, values = (numpy.concatenate(part) for part in zip(*[piece[2:] for piece in pieces if piece[:2] == (name, unit)]))
+        first = numpy.datetime64(int(times[0]), "us")
+        found.append(Column(name, values, unit, times=(times - times[0]) / 1e6,
+                            notes=(f"times are from the first sample, {first}",)))
+    return found
 
 
-def _dated(lines: list[str], delimiter: str | None, at: int) -> "tuple[Array, list[Array]]":
-    """Times [microseconds] of lines with a date, and the columns of the other numbers."""
-    fields = [[field.strip() for field in line.split(delimiter)] for line in lines]
-    wrong = next((row for row in fields if len(row) != len(fields[0]) or not DATE.fullmatch(row[at])), None)
-    if wrong:
-        raise ValueError(f"{wrong}: needs a time such as 2001-01-31T23:59:58.5Z, and {len(fields[0]) - 1} values")
-    times = numpy.array([microseconds(row.pop(at)) for row in fields], float)
-    return times, table([" ".join(row) for row in fields], len(fields[0]))
+def _even(start: str, rate: str, count: int) -> "Array":
+    return microseconds(start) + 1e6 / float(rate) * numpy.arange(count)
 
 
 def _series(lines: list[str]) -> list[Column]:
-    heads = [n for n, line in enumerate(lines) if SERIES.match(line)]
-    channels: dict[tuple[str, str], list] = {}
+    heads, pieces = [n for n, line in enumerate(lines) if SERIES.match(line)], []
     for low, high in zip(heads, [*heads[1:], len(lines)]):
         name, count, rate, start, form, unit = SERIES.match(lines[low]).groups()
-        body = [line for line in lines[low + 1:high] if line.strip()]
-        times, (values, *_) = _dated(body, None, 0) if form.upper() == "TSPAIR" else (None, [numbers(body)])
-        counted(values, int(count))
-        even = microseconds(start) + 1e6 / float(rate) * numpy.arange(len(values))
-        channels.setdefault((name, unit or ""), []).append((even if times is None else times, values))
-    return [from_first(name, unit, pieces) for (name, unit), pieces in channels.items()]
+        if form.upper() == "TSPAIR":
+            times, values = (column.values for column in tables.columns_of(lines[low + 1:high], "columns", None, "."))
+        else:
+            values = numbers(lines[low + 1:high])
+            times = _even(start, rate, len(values))
+        pieces.append((name, unit or "", times, counted(values, int(count))))
+    return _joined(pieces)
 
 
 def _geocsv(lines: list[str]) -> list[Column]:
-    heads = [n for n, line in enumerate(lines) if re.match(r"#\s*dataset\s*:", line)] + [len(lines)]
-    channels: dict[tuple[str, str], list] = {}
-    for low, high in zip(heads, heads[1:]):
-        comments = [line for line in lines[low:high] if line.startswith("#")]
-        body = [line for line in lines[low:high] if line.strip() and not line.startswith("#")]
-        said = keys(comments)
-        delimiter = said.get("DELIMITER", ",") or " "
-        units = [unit.strip() for unit in said["FIELD_UNIT"].split(",")]
-        names = [name.strip() for name in body[0].split(delimiter)]
-        at = next((n for n, unit in enumerate(units) if re.match(r"ISO.?8601|UTC", unit, re.IGNORECASE)), None)
-        if len(names) != len(units) or at is None and len(units) > 1:
-            raise ValueError(f"field_unit: {said['FIELD_UNIT']} and the columns {', '.join(names)}: needs as many units, one "
-                             "of them ISO_8601 or UTC")
-        times, columns = (None, [numbers(body[1:])]) if at is None else _dated(body[1:], delimiter, at)
+    heads, pieces = [n for n, line in enumerate(lines) if re.match(r"#\s*dataset\s*:", line, re.IGNORECASE)], []
+    for low, high in zip(heads, [*heads[1:], len(lines)]):
+        stated = [line.lstrip("# ").partition(":") for line in lines[low:high] if line.startswith("#")]
+        said = {key.strip().upper(): value.strip() for key, _, value in stated}
+        delimiter = said.get("DELIMITER", ",").strip("'\"").replace("\\t", "\t") or None
+        units = [unit.strip() for unit in re.split(rf"[,{re.escape(delimiter or '')}]", said["FIELD_UNIT"])]
+        body = [line for line in lines[low:high] if not line.startswith("#")]
+        columns = tables.columns_of(body, "columns", delimiter if delimiter in body[0] else None, ".")
+        times = next((column.values for column in columns if column.kind == "date"), None)
+        if len(columns) != len(units) or times is None and len(units) > 1:
+            raise ValueError(f"field_unit: {said['FIELD_UNIT']} for {len(columns)} columns: needs as many units, one of them "
+                             "of dates such as 2001-01-31T23:59:58.5Z")
         if times is None:
-            times = microseconds(said["START_TIME"]) + 1e6 / float(said["SAMPLE_RATE_HZ"]) * numpy.arange(len(columns[0]))
+            times = _even(said["START_TIME"], said["SAMPLE_RATE_HZ"], len(columns[0].values))
         counted(times, int(said.get("SAMPLE_COUNT", len(times))))
-        values = [n for n in range(len(units)) if n != at]
-        for n, column in zip(values, columns):
-            name = said.get("SID", names[n]) if len(values) == 1 else names[n]
-            channels.setdefault((name, units[n]), []).append((times, column))
-    return [from_first(name, unit, pieces) for (name, unit), pieces in channels.items()]
+        pieces += [(said.get("SID", column.name) if len(units) < 3 else column.name, unit, times, column.values)
+                   for column, unit in zip(columns, units) if column.kind != "date"]
+    return _joined(pieces)
 
 
 FORMATS = (

@@ -1,4 +1,4 @@
-"""What descriptions of record formats share: columns, signs of a format, numbers of a Fortran format, lines "key: value"."""
+"""What descriptions of record formats share: columns, signs of a format, and numbers of a Fortran format."""
 
 import dataclasses
 import datetime
@@ -14,11 +14,12 @@ if TYPE_CHECKING:
     Array = numpy.ndarray
 numpy = needed("numpy")
 
-NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][-+]?\d+)?"
+NUMBER = r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eEdD][-+]?\d+)?"  # in one way only, for the sake of time
 NUMBERS = re.compile(rf"\s*{NUMBER}(?:(?:\s+|(?=[-+])){NUMBER})*\s*")  # "1.5-2.5" are two, as Fortran writes them
 ONE = re.compile(NUMBER)
 TOUCHING = re.compile(r"(?<=[\d.])(?=[-+])")
 DATE = re.compile(r"\d{4}[-/]\d\d[-/]\d\d(?:[T -]\d\d:\d\d.*)?")
+FLAGS = re.IGNORECASE | re.MULTILINE
 KINDS = {"acc": "acceleration", "vel": "velocity", "dis": "displacement"}
 
 
@@ -65,7 +66,7 @@ class Format:
 
     def missing(self, words: str) -> list[str]:
         """Descriptions of the signs that are not in the lines with words."""
-        return [what for what, pattern in self.signs.items() if not re.search(pattern, words, re.IGNORECASE | re.MULTILINE)]
+        return [what for what, pattern in self.signs.items() if not re.search(pattern, words, FLAGS)]
 
 
 def numeric(line: str) -> bool:
@@ -120,17 +121,19 @@ def counted(values: "Array", count: int, what: str = "its header") -> "Array":
     return values
 
 
+def pairs(name: str, values: "Array", unit: str, kind: str) -> Column:
+    """Of pairs of time [s] and value. Times are rounded in the file: of samples at one time the first one is kept."""
+    times, values = values[::2], values[1::2]
+    kept = numpy.append(True, numpy.diff(times) != 0)
+    notes = (f"{(~kept).sum()} samples at the times of others, which are rounded, were left out",) if not kept.all() else ()
+    return Column(name, values[kept], unit, times=times[kept], kind=kind, notes=notes)
+
+
 def lasting(step: float, count: int, seconds: float, within: float) -> str:
     """Why a sampling interval is in doubt: with it the samples do not last as long as stated. "" if they do."""
     if step > 0 and abs(step * count - seconds) <= within:
         return ""
     return f"a sampling interval of {step:g} s does not make {count} samples last {seconds:g} s, as the header says"
-
-
-def keys(lines: Sequence[str]) -> dict[str, str]:
-    """Of the lines "KEY: value" above the first line of numbers, perhaps behind a #: values by the keys in capitals."""
-    parts = [line.lstrip(" #").partition(":") for line in itertools.takewhile(lambda line: not numeric(line), lines)]
-    return {key.strip().upper(): value.strip() for key, colon, value in parts if colon}
 
 
 def data_of(lines: Sequence[str]) -> list[str]:

@@ -1,14 +1,15 @@
 """SMC of the USGS (National Strong-Motion Program): eleven lines of text, 48 integers, 50 numbers, comments, samples.
 
 The 16th integer is the number of comments, the 17th that of values, of ten characters each, in cm and s. The second number is
-the sampling rate in Hz; where there is none, values are pairs of time and acceleration.
+the sampling rate in Hz; where there is none, values are pairs of time and acceleration. A row of what a buffer had left may
+follow the values.
 """
 
 import re
 
-from .reading import Column, Format, block, counted, kind_in, numbers
+from .reading import FLAGS, Column, Format, block, counted, kind_in, numbers, pairs
 
-INTEGERS, NUMBERS, NONE = 48, 50, 1e38
+INTEGERS, NUMBERS, ROW, NONE = 48, 50, 8, 1e38
 UNITS = {"acceleration": "cm/s^2", "velocity": "cm/s", "displacement": "cm"}
 
 
@@ -18,18 +19,17 @@ def _read(lines: list[str]) -> list[Column]:
     counted(header, INTEGERS + NUMBERS, "the description of the format")
     comments, count, rate = int(header[15]), int(header[16]), header[INTEGERS + 1]
     at = first + len(block(lines, first)) + comments
-    said = lines[at - comments:at]
-    if not all(line.startswith("|") for line in said):
+    if not all(line.startswith("|") for line in lines[at - comments:at]):
         raise ValueError(f"line {at}: {comments} lines of comments with a | are announced")
-    values = counted(numbers([line for line in lines[at:] if line.strip()], "8E10.4"), count)
-    kind = kind_in(lines[0])
-    if not kind:
-        raise ValueError(f"line 1: {lines[0].strip()!r}: is no acceleration, velocity or displacement")
-    name = re.search(r"component\s*=\s*(\S.*?)\s*$", "\n".join(lines[:first]), re.IGNORECASE | re.MULTILINE)
+    values = numbers(lines[at:], "8E10.4")
+    values = counted(values[:count] if count < len(values) <= count + ROW else values, count)
+    kind = "spectrum" if "response" in lines[0].lower() else kind_in(lines[0])
+    said = re.search(r"component\s*=\s*(\S.*?)\s*$", "\n".join(lines[:first]), FLAGS)
+    name, unit = said[1] if said else kind or "value", UNITS.get(kind, "")
     if 0 < rate < NONE:
-        return [Column(name[1] if name else kind, values, UNITS[kind], 1 / rate, kind=kind)]
-    return [Column(name[1] if name else kind, values[1::2], UNITS[kind], times=values[::2], kind=kind)]
+        return [Column(name, values, unit, 1 / rate, kind=kind)]
+    return [pairs(name, values, unit, kind)]
 
 
-FORMAT = Format("SMC", {
-    'a first line such as "2 CORRECTED ACCELEROGRAM"': r"\A\s*[0-9] +(un)?(corrected|velocity|displacement|response)"}, _read)
+FORMAT = Format("SMC", {'a first line such as "2 CORRECTED ACCELEROGRAM"':
+                        r"\A\s*[0-9] +(un)?(corrected|velocity|displacement|response|unknown)"}, _read)

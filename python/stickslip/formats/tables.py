@@ -27,17 +27,17 @@ SAMPLE = 50  # lines that have to agree on how columns are separated
 READINGS = (("\t", "."), ("\t", ","), (";", "."), (";", ","), ("|", "."), (",", "."), (None, "."), (None, ","))
 CLOCK = re.compile(r"(\d+):([0-5]\d):([0-5]\d(?:[.,]\d+)?)")
 SPLIT_DATE = re.compile(r"(\d{4}[-/]\d\d[-/]\d\d)\s+(?=\d\d:\d\d)")
-IN_BRACKETS = re.compile(r"(.*?)[\s_,/]*[\[(]([^\])]*)[\])]\s*")
-STATED = re.compile(r"(.+?)(?:\s+in\s+|\s*/\s*)(\S+)")
-BEHIND = re.compile(r"(.+?)[\s_,]+([^\s_,]+)")
+IN_BRACKETS = re.compile(r"(.*?)[\s_,/]*(?:\[(.*)\]|\((.*)\))\s*")
+BRACKETED = re.compile(r"[\[(].*[\])]")
+APART = re.compile(r"(?<=\w)(?:\s+in\s+|\s*/\s*|[\s_,]+)(?=\S)")
 AMBIGUOUS = ("in", "d", "h", "min", "-", "1")  # are words or parts of names, too
+NO_NAME = re.compile(rf"{NUMBER}[,;]?|.*=")  # words of a sentence or of a header of facts
 NAMES_OF_TIME = ("t", "time", "times", "timestamp", "datetime", "date", "zeit", "temps", "elapsed", "clock", "tiempo", "tempo")
 GLUED = re.compile(r"(t|time|timestamp|elapsed)(s|ms|us|ns|sec|secs|msec|millis|micros|min)", re.IGNORECASE)
 
 
 def _number(field: str, decimal: str) -> float:
     """Dates in microseconds. Raises ValueError where the field is no number."""
-    field = field.strip().strip('"').strip()
     if field.lower() in MISSING:
         return numpy.nan
     if re.fullmatch(NUMBER, field if decimal == "." else field.replace(".", "x").replace(",", ".")):
@@ -50,11 +50,11 @@ def _number(field: str, decimal: str) -> float:
 
 
 def _fields(line: str, delimiter: str | None) -> list[str]:
-    if delimiter is None:
-        return SPLIT_DATE.sub(r"\1T", line).split()
-    fields = next(csv.reader([line.strip(" ")], delimiter=delimiter, skipinitialspace=True)) if '"' in line else (
-        line.strip(" ").split(delimiter))
-    return fields[:-1] if len(fields) > 1 and not fields[-1].strip() else fields
+    fields = SPLIT_DATE.sub(r"\1T", line).split() if delimiter is None else line.strip(" ").split(delimiter)
+    if delimiter and '"' in line:
+        fields = next(csv.reader([line.strip(" ")], delimiter=delimiter, skipinitialspace=True))
+    fields = [field.strip().strip('"').strip() for field in fields]
+    return fields[:-1] if delimiter and len(fields) > 1 and not fields[-1] else fields
 
 
 def _numbers(line: str, reading: tuple[str | None, str]) -> list[float] | None:
@@ -112,14 +112,14 @@ def columns_of(lines: Sequence[str], layout: str | None, delimiter: str | None, 
         elif table and n not in comments:
             raise ValueError(f"line {n + 1}: {line.strip()!r}: needs {count} numbers; correct or remove the line")
         elif not table:
-            fields = _fields(re.sub(r"\s+(?=[\[(])", "", line) if reading[0] is None else line, reading[0])
-            heads.append([field.strip().strip('"').strip() for field in fields])
+            heads.append(_fields(re.sub(r"\s+(?=[\[(])", "", line) if reading[0] is None else line, reading[0]))
     names, units, doubt = _names(heads, count)
     values = numpy.array(table).T
-    if layout is None and names[0] == UNNAMED.format(0):
+    words = reading[0] is None and not _proper(names) and not any(units)  # of a sentence, perhaps
+    if layout is None and (names[0] == UNNAMED.format(0) or words):
         parts = [re.split(r"[,;\s]+", " ".join(head)) for head in heads]
         _require_columns(values, [head for head in parts if len(head) > 2 and all(map(ONE.fullmatch, head))])
-    last = [field.strip().strip('"').strip() for field in _fields(plain[-1], reading[0])]
+    last = _fields(plain[-1], reading[0])
     units = ["us" if DATE.fullmatch(field) else "s" if CLOCK.fullmatch(field) else unit for field, unit in zip(last, units)]
     return [Column(name, column, unit, doubt=doubt, kind="date" if DATE.fullmatch(field) else "")
             for name, unit, column, field in zip(names, units, values, last)]
@@ -148,44 +148,46 @@ def _require_columns(values: "Array", above: Sequence[Sequence[str]]) -> None:
 
 def _names(heads: Sequence[Sequence[str]], count: int) -> tuple[list[str], list[str], str]:
     """Names and units of columns, and what is in doubt about them."""
+    none, fitting = [""] * count, [head for head in heads if len(head) == count]
     unnamed = [UNNAMED.format(n) for n in range(count)]
-    fitting = [head for head in heads if len(head) == count]
-    split = [name_and_unit(field) for field in fitting[-1]] if fitting else []
-    last = bool(fitting) and heads[-1] is fitting[-1]
-    if last and all(re.fullmatch(r"[\[(].*[\])]", field) or is_unit(field) for field in fitting[-1]) and any(fitting[-1]):
-        units = [field.strip("[]()") for field in fitting[-1]]
-        if len(fitting) == 1 and any(kind_of(unit) == "time" or "/" in unit for unit in units) and count > 1:
-            return unnamed, units, ""
-        if len(fitting) == 1:
-            return units, [""] * count, ""
-        if heads[-2] is fitting[-2] and (len(fitting) == 2 or _proper([name_and_unit(name) for name in fitting[-2]])):
-            return list(fitting[-2]), units, ""
-    elif last and (len(fitting) == 1 or _proper(split)):
-        return [name for name, _ in split], [unit for _, unit in split], ""
-    elif not any(_proper([name_and_unit(field) for field in head]) for head in fitting) and not last:
-        return unnamed, [""] * count, ""
-    return unnamed, [""] * count, (f"{len(fitting)} lines could name the columns, and none is directly above the numbers with "
-                                   "names of times or known units")
+    above = [head for head in heads[-2:] if len(head) == count and not any(map(NO_NAME.fullmatch, head))]
+    last = bool(above) and above[-1] is heads[-1]
+    units = [head for head in above if any(head) and all(BRACKETED.fullmatch(field) or is_unit(field) for field in head)]
+    names = [head for head in above if head not in units]
+    if last and len(units) == len(names) == 1 and (len(fitting) == 2 or _proper(names[0])):
+        return names[0], [field.strip("[]()") for field in units[0]], ""
+    if last and units and len(fitting) == 1:
+        plain = [field.strip("[]()") for field in units[0]]
+        stated = count > 1 and any(kind_of(unit) == "time" or "/" in unit for unit in plain)
+        return (unnamed, plain, "") if stated else (plain, none, "")
+    if last and not units and (len(fitting) == 1 or _proper(names[-1])):
+        found, units_of = zip(*map(name_and_unit, names[-1]))
+        return list(found), list(units_of), ""
+    if not last and not any(map(_proper, fitting)):
+        return unnamed, none, ""
+    return unnamed, none, (f"{len(fitting)} lines could name the columns, and none is directly above the numbers with names of "
+                           "times or known units")
 
 
-def _proper(split: Sequence[tuple[str, str]]) -> bool:
-    """Whether one of names and units is of a time, or has a known unit."""
-    return any(name.lower() in NAMES_OF_TIME or unit and is_unit(unit) for name, unit in split)
+def _proper(head: Sequence[str]) -> bool:
+    """Whether one of the names is of a time, or has a known unit."""
+    return any(name.lower() in NAMES_OF_TIME or unit and is_unit(unit) for name, unit in map(name_and_unit, head))
 
 
 def name_and_unit(name: str) -> tuple[str, str]:
     """Name of a column and the unit that stands in brackets or behind it: "a [g]", "a_g", "t/ms", "time in ms", "timeMs"."""
     if found := IN_BRACKETS.fullmatch(name):
-        return found[1].strip() or name, found[2].strip()
+        return found[1].strip() or name, (found[2] or found[3] or "").strip()
     if (kind_of(name) == "time" and name.lower() not in ("h", "d", "min", "ns")) or "/" in name and kind_of(name):
         return name, name
-    if (found := STATED.fullmatch(name)) and is_unit(found[2]):
-        return found[1].strip(), found[2]
     apart = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name)
-    if found := BEHIND.fullmatch(apart) or GLUED.fullmatch(name):
-        head, unit, kind = found[1].strip(), found[2], kind_of(found[2])
-        plain = kind in ("time", "acceleration") or is_unit(unit) and (len(unit) > 1 or unit == "N")
-        if plain and unit.lower() not in AMBIGUOUS or kind == "time" and head.lower() in NAMES_OF_TIME:
+    parts = [(apart[:gap.start()], gap[0].strip(), apart[gap.end():]) for gap in APART.finditer(apart)]
+    if glued := GLUED.fullmatch(name):
+        parts.append((glued[1], "", glued[2]))
+    for head, between, unit in parts:
+        kind = kind_of(unit)
+        clear = unit.lower() not in AMBIGUOUS and (kind in ("time", "acceleration") or len(unit) > 1 or unit == "N")
+        if is_unit(unit) and (between or clear) or kind == "time" and head.lower() in NAMES_OF_TIME:
             return head, unit
     first, _, rest = re.sub(r"[_,:;/]+", " ", apart).strip().partition(" ")
     return (first, rest.strip()) if first.lower() in NAMES_OF_TIME and rest.strip() else (name, "")
@@ -208,16 +210,14 @@ def _channels(lines: Sequence[str], layout: str, delimiter: str | None) -> list[
             ended = count < wide
     if not channels:
         raise ValueError("no numbers in rows; give a file with samples")
-    return [_channel(name, n, numbers(block), layout) for n, (name, block) in enumerate(channels)]
-
-
-def _channel(name: str, n: int, values: "Array", layout: str) -> Column:
-    name = name or f"block {n} of {len(values)}"
-    if layout == "rows":
-        return Column(name, values)
-    if len(values) % 2:
-        raise ValueError(f"{name}: {len(values)} numbers are no pairs; correct the last row")
-    return Column(name, values[1::2], times=values[::2], time_unit="")
+    found = []
+    for n, (name, block) in enumerate(channels):
+        values = numbers(block)
+        name = name or f"block {n} of {len(values)}"
+        if layout == "pairs" and len(values) % 2:
+            raise ValueError(f"{name}: {len(values)} numbers are no pairs; correct the last row")
+        found.append(Column(name, values) if layout == "rows" else Column(name, values[1::2], times=values[::2], time_unit=""))
+    return found
 
 
 def ways(lines: Sequence[str]) -> str:
@@ -228,7 +228,8 @@ def ways(lines: Sequence[str]) -> str:
             columns = columns_of(lines, layout, None, None)
         except ValueError:
             continue
-        largest = sorted(range(len(columns)), key=lambda n: -len(columns[n].values))[:MOST]
+        usable = [n for n, column in enumerate(columns) if column.kind != "date"]
+        largest = sorted(usable, key=lambda n: -len(columns[n].values))[:MOST]
         found.append(f'layout="{layout}" ({how}) with step=, unit= and column= of ' + ", ".join(
             f"{n} ({columns[n].name}: {len(columns[n].values)})" for n in sorted(largest)))
     return " or ".join(found) or "by a stickslip.Record(time, value, unit) of your own arrays"
