@@ -9,6 +9,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from .needed import needed
+from .views import viewed
 
 if TYPE_CHECKING:
     import numpy
@@ -200,8 +201,7 @@ class Chain:
         """Draw autocovariance and spectrum of the chain, beside those that it stands for; returns the figure.
 
         `ax` are two axes of matplotlib to draw in."""
-        from .plots import chains
-        return chains.draw(self, ax)
+        return viewed("picture", self, ax)
 
 
 def _write(path: str | os.PathLike[str], said: str, head: str, rows: Any) -> None:

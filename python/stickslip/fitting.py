@@ -13,6 +13,7 @@ from .measurements import DataSet, data_sets
 from .needed import needed
 from .reference import declared, with_options
 from .results import Results, closest
+from .views import viewed
 
 if TYPE_CHECKING:
     import numpy
@@ -72,6 +73,11 @@ class Fit:
     _u: "Array"
     _pool: tuple[Any, ...]
 
+    @property
+    def sets(self) -> Sequence[DataSet]:
+        """The data sets, in order."""
+        return self._search.sets
+
     def __repr__(self) -> str:
         lines = [f"{name} = {self.estimates[name]:.5g} +- {self.errors[name]:.2g}" for name in self.names]
         values, drawn = self.observations
@@ -95,7 +101,7 @@ class Fit:
             probability of a larger one if the model is right (Kolmogorov and Smirnov). That is an upper limit, as the
             parameters were fitted to the same data.
         """
-        samples = [(sample, found) for one, found in zip(self._search.sets, self.results) for sample in one.samples]
+        samples = [(sample, found) for one, found in zip(self.sets, self.results) for sample in one.samples]
         return [(sample.name, distance := sample.distance(found), float(stats.kstwo.sf(distance, sample.values.size)))
                 for sample, found in samples]
 
@@ -149,8 +155,7 @@ class Fit:
 
     def plot(self, picture: Path | None = None) -> "Figure":
         """Draw the data beside the model: values with their errors, and shares of longer durations."""
-        from .plots import fits
-        return fits.draw(self._search.sets, self.results, self.estimates, self.errors, picture)
+        return viewed("picture", self, picture)
 
 
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)
@@ -176,8 +181,7 @@ class Profile:
 
     def plot(self, picture: Path | None = None) -> "Figure":
         """Draw the profile, with the limits of 68 and 95 % confidence intervals."""
-        from .plots import fits
-        return fits.draw_profile(self, picture)
+        return viewed("picture", self, picture)
 
 
 @with_options

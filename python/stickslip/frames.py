@@ -7,6 +7,7 @@ from .needed import needed
 from .program import ProgramError
 from .reference import declared
 from .results import Result, Results, closest, parameter
+from .views import view
 
 if TYPE_CHECKING:
     import pandas
@@ -37,6 +38,7 @@ def _columns(results: Results, result: Result) -> dict[str, Any]:
     return found
 
 
+@view("table", Results)
 def to_pandas(results: Results, options: Sequence[str] = ()) -> "pandas.DataFrame":
     """One row for each number, in the order of the results; what a result does not have is NaN."""
     pandas = needed("pandas")
@@ -51,6 +53,7 @@ def to_pandas(results: Results, options: Sequence[str] = ()) -> "pandas.DataFram
     return table[[name for name in table if name not in last] + last]
 
 
+@view("dataset", Results)
 def to_xarray(results: Results) -> "xarray.Dataset":
     """Variables by key, with their errors as KEY_error and the ends of intervals as KEY_low and KEY_high."""
     swept = {name: (name, values, {"units": _unit(results, name)}) for name, values in getattr(results, "coords", {}).items()}

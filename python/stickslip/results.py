@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 from .density import Density
 from .needed import needed
 from .program import ProgramError
+from .views import viewed
 
 if TYPE_CHECKING:
     import h5py
@@ -100,12 +101,7 @@ class Result:
         if numpy.ndim(self.value) != 1 or self.abscissa is None:
             raise ValueError(f"{self.key}: is no array over one abscissa; plot() of the results draws sweeps, and "
                              "matplotlib's errorbar numbers")
-        from .plots import style
-        axes = axes or needed("matplotlib.pyplot").gca()
-        style.curve(axes, self, len(axes.lines), **look)
-        axes.set(xlabel=style.over(self),
-                 ylabel=style.WORDS.get(self.key, self.key) + style.units(self.unit))
-        return axes
+        return viewed("picture", self, axes, **look)
 
 
 class Results(Mapping):
@@ -208,8 +204,7 @@ class Results(Mapping):
         figures
             By kind; those of a sweep by the key of the result.
         """
-        from . import plots
-        return plots.draw([self], picture, kind)
+        return viewed("picture", self, picture, kind)
 
     def to_pandas(self, *options: str) -> "pandas.DataFrame":
         """A table with a row for each number.
@@ -237,8 +232,7 @@ class Results(Mapping):
         >>> rows = stickslip.map([{"mu_d": 0.25}, {"mu_d": 0.5, "tau": 2}], quantities="sticking")
         >>> pandas.concat([r.to_pandas("mu_d", "tau") for r in rows])
         """
-        from . import frames
-        return frames.to_pandas(self, options)
+        return viewed("table", self, options)
 
     def to_xarray(self) -> "xarray.Dataset":
         """A data set with a variable for each key.
@@ -257,8 +251,7 @@ class Results(Mapping):
         ImportError
             Without xarray.
         """
-        from . import frames
-        return frames.to_xarray(self)
+        return viewed("dataset", self)
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the summary as JSON, which `stickslip.load` reads.

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from ..results import Results
 from ..sweeps import Sweep
+from ..views import view
 from . import curves, distributions, fields, studies, sweeping
 from .style import saved
 
@@ -85,6 +86,12 @@ def draw(items: Sequence[Results], picture: str | pathlib.Path | None = None,
         If there is nothing to draw, or a picture cannot be of that name.
     """
     return Figures((name, figure) for name, figure, _ in drawn(items, picture, kind))
+
+
+@view("picture", Results)
+def _drawn_alone(results: Results, picture: str | pathlib.Path | None = None,
+                 kind: str | None = None) -> "dict[str, Figure]":
+    return draw([results], picture, kind)
 
 
 def drawn(items: Sequence[Results], picture: str | pathlib.Path | None = None,

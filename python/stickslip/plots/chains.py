@@ -1,16 +1,17 @@
 """Autocovariance and spectrum of a chain, beside those that it stands for."""
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from ..chains import Chain
+from ..views import view
 from .style import ABSCISSAE, COLOURS, Figure, numpy, styled, units
 
-if TYPE_CHECKING:
-    from ..chains import Chain
 SMALL = 0.02  # of the variance, which the covariance has fallen to where the picture ends
 
 
+@view("picture", Chain)
 @styled
-def draw(chain: "Chain", axes: Any = None) -> Figure:
+def draw(chain: Chain, axes: Any = None) -> Figure:
     """Draws in two axes, by default of a new figure; returns the figure."""
     of_time, of_frequency = Figure(figsize=(8, 3.2)).subplots(1, 2) if axes is None else axes
     longest = 1 / abs(chain.generator.diagonal()).max()

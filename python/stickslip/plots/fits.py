@@ -1,30 +1,30 @@
 """Measurements beside the model that was fitted to them, and profiles of parameters."""
 
 import pathlib
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
-from ..measurements import PHASES, DataSet, Sample, Values, at
+from ..fitting import Fit, Profile
+from ..measurements import PHASES, Sample, Values, at
 from ..results import Results
+from ..views import view
 from .style import ABSCISSAE, COLOURS, WORDS, Figure, numpy, on_axis, saved, styled, symbol, units
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-
-    from ..fitting import Profile
 COLUMNS = 3  # of panels
 WIDE = 20    # factor between values
 LIMITS = (0.99, 3.84)  # rise of a profile at the ends of 68 and 95 % confidence intervals
 
 
+@view("picture", Fit)
 @styled
-def draw(sets: Sequence[DataSet], results: Sequence[Results], estimates: Mapping[str, float], errors: Mapping[str, float],
-         picture: str | pathlib.Path | None) -> "Figure":
+def draw(fit: Fit, picture: str | pathlib.Path | None) -> "Figure":
     """A panel for each array and each sample, and one for all scalars; the estimates above."""
     panels: list[Callable[[Axes], None]] = []
     scalars = []
-    for n, (one, found) in enumerate(zip(sets, results)):
-        name = f"  (set {n})" if len(sets) > 1 else ""
+    for n, (one, found) in enumerate(zip(fit.sets, fit.results)):
+        name = f"  (set {n})" if len(fit.sets) > 1 else ""
         scalars += [(values.key + name, (values.value - values.of(found))[0] / values.error[0]) for values in one.values
                     if values.over is None]
         panels += [lambda axes, values=values, found=found, name=name: _array(axes, values, found, name)
@@ -41,8 +41,8 @@ def draw(sets: Sequence[DataSet], results: Sequence[Results], estimates: Mapping
         panel(place)
     for place in places[len(panels):]:
         place.set_visible(False)
-    figure.suptitle(",   ".join(rf"{symbol(name)} = {value:.4g} $\pm$ {errors[name]:.2g}"
-                                for name, value in estimates.items()))
+    figure.suptitle(",   ".join(rf"{symbol(name)} = {value:.4g} $\pm$ {fit.errors[name]:.2g}"
+                                for name, value in fit.estimates.items()))
     saved(figure, pathlib.Path(picture) if picture else None)
     return figure
 
@@ -80,8 +80,9 @@ def _sample(axes: "Axes", sample: Sample, found: Results, name: str) -> None:
     axes.legend()
 
 
+@view("picture", Profile)
 @styled
-def draw_profile(profile: "Profile", picture: str | pathlib.Path | None) -> "Figure":
+def draw_profile(profile: Profile, picture: str | pathlib.Path | None) -> "Figure":
     """The rise of twice the misfit, and the limits of confidence intervals."""
     figure = Figure(figsize=(4.4, 3.2))
     axes = figure.subplots()

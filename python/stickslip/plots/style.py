@@ -11,6 +11,7 @@ from ..needed import needed
 from ..program import ProgramError
 from ..reference import declared
 from ..results import Result, Results
+from ..views import view
 
 if TYPE_CHECKING:
     import numpy
@@ -91,6 +92,15 @@ def curve(axes: "Axes", result: Result, n: int = 0, *, colour: str | None = None
     axes.plot(x, value, color=colour, linestyle=style, linewidth=1.6, label=label,
               marker="." if x.size <= FEW_POINTS else None, markersize=5)
     axes.fill_between(x, value - error, value + error, color=colour, alpha=0.25, linewidth=0)
+
+
+@view("picture", Result)
+def labelled(result: Result, axes: "Axes | None" = None, **look: Any) -> "Axes":
+    """An array in axes, by default the current ones of pyplot, which get its labels."""
+    axes = axes or needed("matplotlib.pyplot").gca()
+    curve(axes, result, len(axes.lines), **look)
+    axes.set(xlabel=over(result), ylabel=WORDS.get(result.key, result.key) + units(result.unit))
+    return axes
 
 
 def bars(axes: "Axes", x: "numpy.ndarray", value: "numpy.ndarray", ci95: "numpy.ndarray", colour: str,
