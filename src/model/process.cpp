@@ -4,6 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+
+#include "stickslip/base/text.hpp"
+#include "stickslip/linalg/dense.hpp"
 
 namespace stickslip::model {
 namespace {
@@ -82,6 +86,76 @@ std::string please_report(const Process& process) {
       "{}, tau = {}, delta = {}, noise_levels = {}, {}, bias = {}",
       process.friction.mu_s, process.friction.mu_d, process.noise.tau, process.noise.delta,
       process.noise.levels, drag, process.bias);
+}
+
+namespace {
+
+// The first and the last level with the force of level i.
+struct Block {
+  Block(const NoiseChain& chain, int i) : first(i), last(i) {
+    while (first > chain.lowest() && chain.level(first - 1) == chain.level(i)) --first;
+    while (last < chain.highest() && chain.level(last + 1) == chain.level(i)) ++last;
+  }
+  [[nodiscard]] bool holds(int i) const { return first <= i && i <= last; }
+
+  int first, last;
+};
+
+}  // namespace
+
+ChangeRates change_rates(const NoiseChain& chain, int i) {
+  const Block block(chain, i);
+  ChangeRates rates{kInfinity, 0};
+  for (int from = block.first; from <= block.last; ++from) {
+    double sum = 0;
+    chain.for_each_jump(from, [&](int to, double rate) { sum += block.holds(to) ? 0 : rate; });
+    rates = {std::min(rates.least, sum), std::max(rates.most, sum)};
+  }
+  return rates;
+}
+
+Unchanged unchanged(const NoiseChain& chain, int i, double time) {
+  const Block block(chain, i);
+  const int count = block.last - block.first + 1;
+  if (count == 1) return {i, {std::exp(-chain.rate(i) * time)}};
+  linalg::Matrix<double> killed(count, count);
+  for (int from = block.first; from <= block.last; ++from) {
+    const int row = from - block.first;
+    killed(row, row) = -chain.rate(from);
+    chain.for_each_jump(from, [&](int to, double rate) {
+      if (block.holds(to)) killed(row, to - block.first) += rate;
+    });
+  }
+  const auto moved = linalg::exponential(std::move(killed), time);
+  Unchanged found{block.first};
+  for (int n = 0; n < count; ++n) found.probability.push_back(moved(i - block.first, n));
+  return found;
+}
+
+std::optional<double> effective_mu_s(const Scene& scene, bool backwards) {
+  if (scene.noise.table || scene.noise.name.empty()) return std::nullopt;
+  const Process forwards = scene.meant(), process = backwards ? forwards.mirrored() : forwards;
+  const bool slides_there = process.highest_static() < process.noise.highest();
+  if (!process.sticks() || !slides_there) return std::nullopt;
+  const double given = process.friction.mu_s,
+               effective = process.noise.level(process.highest_static()) + process.bias;
+  constexpr double rounding = 1e-9;    // of the sum, and of what people write
+  constexpr double negligible = 1e-6;  // of the distance of levels
+  const double least =
+      std::max(rounding * (given + std::abs(process.bias)), negligible * scene.delta);
+  return std::abs(effective - given) <= least ? std::nullopt : std::optional(effective);
+}
+
+double largest_force(const Scene& scene) {
+  const auto process = scene.meant();
+  const auto& noise = process.noise;
+  const double highest = std::max(noise.level(noise.highest()), -noise.level(noise.lowest()));
+  const auto &along = scene.friction, against = along.mirrored();
+  const double seen =
+      std::max(along.mu_s, against.mu_s) + noise.step() + 12 * noise.standard_deviation();
+  const double drawn = std::min(highest, noise.table ? highest : seen);
+  return std::max(drawn, scene.force ? std::abs(scene.force->force[scene.force->peak()]) : 0) +
+         std::abs(scene.bias) - std::min(along.mu_d, against.mu_d);
 }
 
 }  // namespace stickslip::model

@@ -13,13 +13,12 @@
 #include <tuple>
 #include <utility>
 
-#include "stickslip/algebra/dense.hpp"
-#include "stickslip/algebra/rate_elimination.hpp"
+#include "stickslip/linalg/dense.hpp"
 
 namespace stickslip::model {
 namespace {
 
-using algebra::RateElimination;
+using linalg::RateElimination;
 
 // A state that cannot be reached from state 0; their number if there is none.
 std::size_t not_reached(std::size_t count, const std::vector<Transition>& transitions) {
@@ -278,7 +277,7 @@ double intensity(const Jumps& jumps, std::span<const double> p, const std::vecto
 double peak_intensity(const Jumps& jumps, std::span<const double> p, const std::vector<double>& f) {
   const int most = std::min<int>(60, static_cast<int>(f.size()) - 1);
   const double square = weighted(p, f, f);
-  algebra::Matrix<double> h(most + 1, most);
+  linalg::Matrix<double> h(most + 1, most);
   std::vector<std::vector<double>> basis{f};
   for (double& value : basis[0]) value /= std::sqrt(square);
   int size = 0;
@@ -302,13 +301,13 @@ double peak_intensity(const Jumps& jumps, std::span<const double> p, const std::
     basis.push_back(std::move(next));
   }
   const auto at = [&](double omega) {
-    algebra::Matrix<std::complex<double>> shifted(size, size), first(size, 1);
+    linalg::Matrix<std::complex<double>> shifted(size, size), first(size, 1);
     for (int c = 0; c < size; ++c) {
       for (int r = 0; r < size; ++r) shifted(r, c) = h(r, c);
       shifted(c, c) += std::complex<double>(0, omega);
     }
     first(0, 0) = 1;
-    algebra::LuFactors<std::complex<double>>(std::move(shifted)).solve(first);
+    linalg::LuFactors<std::complex<double>>(std::move(shifted)).solve(first);
     return square * first(0, 0).real();
   };
   double largest = at(0);

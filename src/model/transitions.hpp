@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "stickslip/model/level_table.hpp"
+#include "stickslip/model/noise_chain.hpp"
 
 namespace stickslip::model {
 

@@ -5,24 +5,90 @@
 #include <iterator>
 #include <span>
 
-#include "stickslip/petsc/session.hpp"
-#include "stickslip/petsc/vectors.hpp"
+#include "stickslip/generator/state_space.hpp"
+#include "stickslip/linalg/session.hpp"
+#include "stickslip/linalg/vectors.hpp"
+#include "stickslip/quantities/engines/excursions.hpp"
 #include "stickslip/quantities/plan.hpp"
-#include "stickslip/quantities/stationary.hpp"
 
 namespace stickslip::quantities {
 namespace {
 
-using operators::Branch;
-using operators::State;
-using operators::StateKind;
+using generator::Branch;
+using generator::State;
+using generator::StateKind;
+
+}  // namespace
+
+PhaseField::PhaseField(const generator::Discretisation& discretisation,
+                       const generator::StateSpace& states, Kind kind)
+    : noise_(discretisation.noise),
+      lowest_(discretisation.process.noise.lowest()),
+      kind_(kind),
+      local_noise_(states.local_noise()) {
+  const auto& chain = discretisation.process.noise;
+  for (int i = chain.lowest(); i <= chain.highest(); ++i) x_.push_back(chain.level(i));
+  const auto nodes = discretisation.velocities->nodes();
+  std::transform(nodes.rbegin(), nodes.rend(), std::back_inserter(v_),
+                 [](double node) { return -node; });
+  v_.insert(v_.end(), nodes.begin(), nodes.end());
+  by_node_.assign(local_noise_.size() * v_.size(), 0.0);
+}
+
+std::size_t PhaseField::row_start(int noise) const {
+  const auto place = std::lower_bound(local_noise_.begin(), local_noise_.end(), noise);
+  return static_cast<std::size_t>(place - local_noise_.begin()) * v_.size();
+}
+
+void PhaseField::add(generator::Branch branch, int noise, int node, double value) {
+  const std::size_t nodes = v_.size() / 2;
+  const bool upper = branch == generator::Branch::positive;
+  by_node_[upper ? row_start(noise) + nodes + node : row_start(-noise) + nodes - 1 - node] += value;
+}
+
+template <class Visit>
+void PhaseField::for_each_group(Visit visit) const {
+  for (auto n = local_noise_.begin(); n != local_noise_.end();) {
+    const auto& group = noise_->group_of(*n);
+    visit(group);
+    n += group.count;
+  }
+}
+
+std::vector<std::size_t> PhaseField::local_levels() const {
+  std::vector<std::size_t> levels;
+  for_each_group([&](const generator::Nodes::Group& group) {
+    for (int i = group.first - lowest_; i <= group.last - lowest_; ++i) {
+      levels.push_back(static_cast<std::size_t>(i));
+    }
+  });
+  return levels;
+}
+
+std::vector<double> PhaseField::local_rows() const {
+  std::vector<double> rows;
+  for_each_group([&](const generator::Nodes::Group& group) {
+    const double* nodes = by_node_.data() + row_start(group.begin);
+    for (int i = group.first; i <= group.last; ++i) {
+      const auto shares = group.row(kind_ == Kind::function ? group.value : group.weight, i);
+      for (std::size_t v = 0; v < v_.size(); ++v) {
+        double sum = 0;
+        for (std::size_t l = 0; l < shares.size(); ++l) sum += shares[l] * nodes[l * v_.size() + v];
+        rows.push_back(sum);
+      }
+    }
+  });
+  return rows;
+}
+
+namespace {
 
 // Calls visit(branch, state, probability) for the local sliding states; what is symmetry-reduced
 // stands for two places, each with half of the mass.
 template <class Visit>
 void for_each_place(const StationaryDistribution& distribution, Visit visit) {
   const double total = distribution.excursion().mean_excursion();
-  const petsc::ReadView local(distribution.occupation());
+  const linalg::ReadView local(distribution.occupation());
   PetscInt at = 0;
   distribution.states().for_each_local([&](const State& state) {
     const double probability = PetscRealPart(local[at++]) / total;
@@ -95,7 +161,7 @@ DensityField density_field(const StationaryDistribution& distribution) {
     field.velocity_marginal[upper ? nodes + state.node : nodes - 1 - state.node] += density;
   });
   for (auto* marginal : {&noise_marginal, &field.velocity_marginal}) {
-    petsc::sum_over_ranks(distribution.states().comm(), *marginal);
+    linalg::sum_over_ranks(distribution.states().comm(), *marginal);
   }
   field.cells.erase(field.cells.begin() + static_cast<std::ptrdiff_t>(field.cells.size() / 2) - 1);
   field.least = least_value(distribution.states().comm(), field.pdf);
@@ -108,14 +174,14 @@ SpeedDistribution speed_distribution(const StationaryDistribution& distribution)
   const double total = distribution.excursion().mean_excursion();
   const std::size_t nodes = distribution.discretisation().velocities->size();
   std::vector<double> sums(nodes + 2, 0.0);  // of the nodes, the origin and the holding states
-  const petsc::ReadView local(distribution.occupation());
+  const linalg::ReadView local(distribution.occupation());
   PetscInt at = 0;
   distribution.states().for_each_local([&](const State& state) {
     std::size_t place = static_cast<std::size_t>(state.node);
     if (state.kind != StateKind::node) place = nodes + (state.kind == StateKind::holding ? 1 : 0);
     sums[place] += PetscRealPart(local[at++]) / total;
   });
-  petsc::sum_over_ranks(distribution.states().comm(), sums);
+  linalg::sum_over_ranks(distribution.states().comm(), sums);
   return {distribution.discretisation().velocities,
           {sums.begin(), sums.begin() + static_cast<std::ptrdiff_t>(nodes)},
           sums[nodes] + distribution.excursion().mean_stick() / total,

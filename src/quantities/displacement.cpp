@@ -1,27 +1,32 @@
 #include "stickslip/quantities/displacement.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <memory>
 #include <utility>
 
-#include "stickslip/catalogue/displacement_keys.hpp"
-#include "stickslip/petsc/check.hpp"
-#include "stickslip/petsc/vectors.hpp"
+#include "engines/displacement_model.hpp"
+#include "stickslip/case/displacement_rows.hpp"
+#include "stickslip/linalg/petsc.hpp"
+#include "stickslip/linalg/vectors.hpp"
+#include "stickslip/quantities/engines/propagator.hpp"
 #include "stickslip/quantities/plan.hpp"
-#include "stickslip/quantities/time_functions.hpp"
 
 namespace stickslip::quantities {
 namespace {
 
-using operators::ComplexVector;
-using operators::KolmogorovOperator;
-using operators::State;
-using operators::StateKind;
-using operators::StaticPhase;
-using operators::Symmetry;
-using petsc::check;
-using petsc::dot;
+using generator::ComplexVector;
+using generator::KolmogorovOperator;
+using generator::State;
+using generator::StateKind;
+using generator::StaticPhase;
+using generator::Symmetry;
+using linalg::check;
+using linalg::dot;
+
 using Nature = ReducedModel::Nature;
 
 /// u2' = -A2 u2 + f u1, u1' = -A1 u1, f a function of the state, as one vector: u2 and then u1 of
@@ -42,15 +47,15 @@ class CoupledPencil final : public Pencil {
     };
     outer_places_ = sliding(outer.a());
     inner_places_ = sliding(inner.a());
-    const petsc::ReadView value(f);
+    const linalg::ReadView value(f);
     for (PetscInt place : inner_places_) f_.push_back(value[place]);
   }
 
-  [[nodiscard]] petsc::VecHandle joined(Vec outer, Vec inner) const {
+  [[nodiscard]] linalg::VecHandle joined(Vec outer, Vec inner) const {
     PetscInt first = 0, second = 0;
     check(VecGetLocalSize(outer, &first));
     check(VecGetLocalSize(inner, &second));
-    petsc::VecHandle all;
+    linalg::VecHandle all;
     check(VecCreateMPI(PetscObjectComm(reinterpret_cast<PetscObject>(outer)), first + second,
                        PETSC_DETERMINE, all.out()));
     join(outer, inner, all);
@@ -59,7 +64,7 @@ class CoupledPencil final : public Pencil {
 
   void multiply(Vec x, Vec y, bool transposed) const override {
     const Parts given = apart(x);
-    const petsc::VecHandle y2 = outer_.a().zeros(), y1 = inner_.a().zeros();
+    const linalg::VecHandle y2 = outer_.a().zeros(), y1 = inner_.a().zeros();
     outer_.multiply(given.outer, y2, transposed);
     inner_.multiply(given.inner, y1, transposed);
     transposed ? couple(-1, given.outer, outer_places_, y1, inner_places_)
@@ -69,7 +74,7 @@ class CoupledPencil final : public Pencil {
 
   void solve(double z, Vec b, Vec x, bool transposed, bool refined) override {
     const Parts given = apart(b);
-    const petsc::VecHandle x2 = outer_.a().zeros(), x1 = inner_.a().zeros();
+    const linalg::VecHandle x2 = outer_.a().zeros(), x1 = inner_.a().zeros();
     if (transposed) {
       outer_.solve(z, given.outer, x2, true, refined);
       couple(1, x2, outer_places_, given.inner, inner_places_);
@@ -99,15 +104,15 @@ class CoupledPencil final : public Pencil {
       for (const Parts* parts : {&real, &imaginary}) pencil_.send(*parts, transposed);
       if (transposed) solve_with(*inner_, real.inner, imaginary.inner, true);
       if (!transposed) solve_with(*outer_, real.outer, imaginary.outer, false);
-      ComplexVector x{petsc::copy_of(b.real), petsc::copy_of(b.imaginary)};
+      ComplexVector x{linalg::copy_of(b.real), linalg::copy_of(b.imaginary)};
       join(real.outer, real.inner, x.real);
       join(imaginary.outer, imaginary.inner, x.imaginary);
       return x;
     }
 
    private:
-    static void solve_with(ShiftedPencil& factors, petsc::VecHandle& real,
-                           petsc::VecHandle& imaginary, bool transposed) {
+    static void solve_with(ShiftedPencil& factors, linalg::VecHandle& real,
+                           linalg::VecHandle& imaginary, bool transposed) {
       ComplexVector x = factors.solve({std::move(real), std::move(imaginary)}, transposed);
       real = std::move(x.real);
       imaginary = std::move(x.imaginary);
@@ -118,20 +123,20 @@ class CoupledPencil final : public Pencil {
   };
 
   struct Parts {
-    petsc::VecHandle outer, inner;
+    linalg::VecHandle outer, inner;
   };
   [[nodiscard]] Parts apart(Vec all) const {
     Parts parts{outer_.a().zeros(), inner_.a().zeros()};
-    const petsc::ReadView from(all);
-    petsc::WriteView outer(parts.outer), inner(parts.inner);
+    const linalg::ReadView from(all);
+    linalg::WriteView outer(parts.outer), inner(parts.inner);
     const auto* middle = from.data() + outer.size();
     std::copy(from.data(), middle, outer.data());
     std::copy(middle, middle + inner.size(), inner.data());
     return parts;
   }
   static void join(Vec outer, Vec inner, Vec all) {
-    const petsc::ReadView first(outer), second(inner);
-    petsc::WriteView to(all);
+    const linalg::ReadView first(outer), second(inner);
+    linalg::WriteView to(all);
     std::copy(second.data(), second.data() + second.size(),
               std::copy(first.data(), first.data() + first.size(), to.data()));
   }
@@ -143,8 +148,8 @@ class CoupledPencil final : public Pencil {
   // y += sign f x.
   void couple(double sign, Vec x, const std::vector<PetscInt>& from, Vec y,
               const std::vector<PetscInt>& to) const {
-    const petsc::ReadView values(x);
-    petsc::WriteView sums(y);
+    const linalg::ReadView values(x);
+    linalg::WriteView sums(y);
     for (std::size_t n = 0; n < f_.size(); ++n) sums[to[n]] += sign * f_[n] * values[from[n]];
   }
 
@@ -153,14 +158,14 @@ class CoupledPencil final : public Pencil {
   std::vector<PetscScalar> f_;
 };
 
-petsc::VecHandle scaled(Vec x, double factor) {
-  petsc::VecHandle copy = petsc::copy_of(x);
+linalg::VecHandle scaled(Vec x, double factor) {
+  linalg::VecHandle copy = linalg::copy_of(x);
   check(VecScale(copy, factor));
   return copy;
 }
 
 // The mean velocity, by which all bodies move alike.
-void add_drift(const operators::Discretisation& discretisation, const Excursion& excursion,
+void add_drift(const generator::Discretisation& discretisation, const Excursion& excursion,
                const std::vector<double>& time, std::vector<Uncertain>& mean) {
   const double drift = excursion.mean_drift(*discretisation.noise) / excursion.mean_excursion();
   const double defect = excursion.conservation_defect(discretisation);
@@ -171,7 +176,7 @@ void add_drift(const operators::Discretisation& discretisation, const Excursion&
 
 }  // namespace
 
-Displacement displacement(operators::Systems& systems, const StationaryDistribution& distribution,
+Displacement displacement(generator::Systems& systems, const StationaryDistribution& distribution,
                           const model::Start& start, const std::vector<double>& time,
                           const ModelTolerance& tolerance) {
   const TimeScales scales = time_scales(systems.process());
@@ -181,7 +186,7 @@ Displacement displacement(operators::Systems& systems, const StationaryDistribut
   const double variance = dot(velocity.c, v), tau = scales.correlation;
   const double longest = std::max(*std::max_element(time.begin(), time.end()) / tau, 1e-9);
   const double spread = longest * longest / (1 + longest);  // variance of y, in about these units
-  const petsc::VecHandle weight = distribution.weight_on(inner.a());
+  const linalg::VecHandle weight = distribution.weight_on(inner.a());
   Displacement x;
   x.mean.resize(time.size());
   x.variance.resize(time.size());
@@ -201,11 +206,11 @@ Displacement displacement(operators::Systems& systems, const StationaryDistribut
   if (!stationary) {
     // In units of the standard deviation of the velocity and of tau.
     const double unit = 1 / std::sqrt(variance);
-    ProcessPencil outer(systems, operators::symmetry_of(systems.process()), StaticPhase::kept);
-    const petsc::VecHandle b = scaled(v, unit / tau);
+    ProcessPencil outer(systems, generator::symmetry_of(systems.process()), StaticPhase::kept);
+    const linalg::VecHandle b = scaled(v, unit / tau);
     CoupledPencil both(outer, inner, scaled(b, 2));
-    const petsc::VecHandle first = start_on(inner.a(), start), second = start_on(outer.a(), start),
-                           none = inner.a().zeros(), nothing = outer.a().zeros();
+    const linalg::VecHandle first = start_on(inner.a(), start), second = start_on(outer.a(), start),
+                            none = inner.a().zeros(), nothing = outer.a().zeros();
     if (!still && counts(first)) {
       x.mean = time_curve(inner, {b, first, weight}, nature_of(start), {{1, std::sqrt(spread)}},
                           time, scales, tolerance.value, tolerance.recipe("mean of displacement"))
@@ -215,8 +220,8 @@ Displacement displacement(operators::Systems& systems, const StationaryDistribut
       check(VecAXPY(second, -1 / distribution.excursion().mean_excursion(),
                     distribution.occupation_on(outer.a())));
     }
-    const petsc::VecHandle all_b = both.joined(nothing, b), all_c = both.joined(second, none),
-                           all = both.joined(distribution.weight_on(outer.a()), weight);
+    const linalg::VecHandle all_b = both.joined(nothing, b), all_c = both.joined(second, none),
+                            all = both.joined(distribution.weight_on(outer.a()), weight);
     const auto square =
         time_curve(both, {all_b, all_c, all}, nature_of(start), {{1, spread}}, time, scales,
                    tolerance.value, tolerance.recipe("square of displacement"))
@@ -237,11 +242,47 @@ void displacement_tasks(Planner& planner) {
     const auto& question = computation.question();
     const auto x = displacement(computation.systems, computation.distribution(), question.start,
                                 question.time, computation.tolerance());
-    append_array(array(catalogue::kDisplacementMean, question.time), x.mean, computation.results());
-    append_array(array(catalogue::kDisplacementVariance, question.time), x.variance,
+    append_array(array(cases::kDisplacementMean, question.time), x.mean, computation.results());
+    append_array(array(cases::kDisplacementVariance, question.time), x.variance,
                  computation.results());
   };
   planner.add_adaptive("displacement", stationary ? 6 : 12, stationary ? 36 : 200, find);
+}
+
+namespace {
+
+void find_transform(Computation& computation) {
+  const auto& question = computation.question();
+  const auto wavenumbers = question.values(cases::kWavenumber.option);
+  const bool even = model::mirrors_itself(computation.process(), question.start);
+  for (double t : question.time) {
+    const auto of = [&](const Row& row) {
+      Result result = array(row, wavenumbers);
+      result.key = row.key_of(fmt::format("{}", t));
+      return result;
+    };
+    Result cosine = of(cases::kDisplacementCosine), sine = of(cases::kDisplacementSine);
+    DisplacementModel model(computation.systems, computation.distribution(), question.start, t,
+                            computation.tolerance().value);
+    for (double k : wavenumbers) {
+      DisplacementModel::Transform found{1, 0};
+      if (t != 0 && k != 0) found = model.at(k);
+      append_value(cosine, {found.value.real(), found.error});
+      append_value(sine, even ? Uncertain{} : Uncertain{found.value.imag(), found.error});
+    }
+    for (auto* result : {&cosine, &sine}) computation.results().push_back(std::move(*result));
+  }
+}
+
+}  // namespace
+
+void displacement_transform_tasks(Planner& planner) {
+  planner.need_distribution();
+  const auto& question = planner.question();
+  const auto& wavenumbers = question.values(cases::kWavenumber.option);
+  resolve_displacements(planner, largest_size(wavenumbers));
+  const auto count = static_cast<int>(question.time.size() * wavenumbers.size());
+  planner.add_adaptive("displacement transform", 2 * count, 50 * count, find_transform);
 }
 
 }  // namespace stickslip::quantities

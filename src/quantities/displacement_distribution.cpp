@@ -1,27 +1,197 @@
+#include <boost/math/tools/roots.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <boost/math/tools/roots.hpp>
 #include <cmath>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <numeric>
 #include <optional>
+#include <utility>
+#include <vector>
 
-#include "stickslip/catalogue/displacement_distribution_keys.hpp"
-#include "stickslip/exact/fourier_inversion.hpp"
-#include "stickslip/model/same_force.hpp"
-#include "stickslip/quantities/displacement_tail.hpp"
+#include "engines/displacement_model.hpp"
+#include "stickslip/base/text.hpp"
+#include "stickslip/case/displacement_rows.hpp"
+#include "stickslip/model/process.hpp"
 #include "stickslip/quantities/durations.hpp"
+#include "stickslip/quantities/engines/inversion.hpp"
 #include "stickslip/quantities/plan.hpp"
 #include "stickslip/simulation/flow.hpp"
-#include "stickslip/support/infinity.hpp"
 
 namespace stickslip::quantities {
 namespace {
 
-using Inversion = exact::FourierInversion;
 using model::Start;
+
+}  // namespace
+
+// Small probabilities of displacements.
+
+/// A displacement that has a probability.
+struct Atom {
+  double at = 0;
+  Uncertain probability = {};
+};
+
+/// The distribution of x(t) on one side of its mean, without atoms, with relative errors, down to
+/// probabilities of 1e-14: by inversion with paths weighted with exp(s x). Weights that rise by 1.2
+/// in units of the deviation, one after the other, have their means further and further out. The
+/// two whose means are next to d both give P, and their difference is part of the error. A weight
+/// costs a dozen wavenumbers, and some 12 more where it is used.
+class DisplacementTail {
+ public:
+  /// Above the mean (side 1) or below it (side -1), for mass, mean and standard deviation of what
+  /// is no atom. The computation must live as long. Local.
+  DisplacementTail(const Computation& computation, double time, std::vector<Atom> atoms, int side,
+                   double mass, double mean, double deviation);
+
+  /// The probability of what lies beyond d; where that is too small, 0 with a bound of it as error.
+  /// Collective. Throws NotReached or NoMemory.
+  [[nodiscard]] Uncertain beyond(double d) { return at(d, &TailInversion::beyond); }
+  /// The density there. Collective. Throws NotReached or NoMemory.
+  [[nodiscard]] Uncertain density(double d) { return at(d, &TailInversion::density); }
+  /// A displacement beyond which there is less than a probability p, if there is one within reach.
+  /// Collective. Throws NotReached or NoMemory.
+  [[nodiscard]] double end(double p);
+  [[nodiscard]] int evaluations() const;
+
+ private:
+  /// A weight exp(s x), with log E exp(s x), and mean and deviation of what is weighted.
+  struct Weight {
+    double s = 0, log_size = 0, mean = 0, deviation = 0;
+    double scaled = 1, doubt = 0;  // the size in units of the model, and its relative error
+    std::unique_ptr<DisplacementModel> model = {};
+    std::optional<TailInversion> inversion = {};
+  };
+  using OfInversion = Uncertain (TailInversion::*)(double) const;
+
+  bool add_weight();  // false where all has been reached
+  [[nodiscard]] FourierInversion::Transformed transform(const Weight& of, double k) const;
+  [[nodiscard]] Uncertain at(double d, OfInversion of);
+  [[nodiscard]] Uncertain by(Weight& weight, double d, OfInversion of);
+
+  const Computation& computation_;
+  double time_;
+  std::vector<Atom> atoms_;
+  int side_;
+  std::vector<Weight> weights_;  // the first is none
+  bool ended_ = false;
+};
+
+namespace {
+
+using Complex = std::complex<double>;
+
+// Logarithm of probabilities that nobody looks for.
+constexpr double kNothing = -32;
+constexpr double kWithin = 2;  // deviations beyond the mean of the last weight
+
+}  // namespace
+
+DisplacementTail::DisplacementTail(const Computation& computation, double time,
+                                   std::vector<Atom> atoms, int side, double mass, double mean,
+                                   double deviation)
+    : computation_(computation), time_(time), atoms_(std::move(atoms)), side_(side) {
+  weights_.push_back({0, std::log(mass), mean, deviation});
+}
+
+// The part without atoms of E exp((s + i k) x), in units of what its model gives.
+FourierInversion::Transformed DisplacementTail::transform(const Weight& of, double k) const {
+  const auto found = of.model->at(k);
+  const double growth = (of.log_size - std::log(of.scaled)) / time_;
+  Complex value = found.value;
+  double error = found.error;
+  for (const Atom& atom : atoms_) {
+    const double size = std::exp(of.s * atom.at - growth * time_);
+    value -= std::polar(size * atom.probability.value, k * atom.at);
+    error += size * atom.probability.error;
+  }
+  return {value / of.scaled, error / of.scaled};
+}
+
+bool DisplacementTail::add_weight() {
+  constexpr double first = 1.5, further = 1.2, probe = 0.5;
+  constexpr std::size_t most = 14;
+  const Weight& last = weights_.back();
+  if (ended_) return false;
+  const auto& question = computation_.question();
+  // Cumulants of the last one predict the next.
+  const double ds = side_ * (weights_.size() == 1 ? first : further) / last.deviation,
+               square = last.deviation * last.deviation;
+  Weight next;
+  next.s = last.s + ds;
+  next.log_size = last.log_size + ds * last.mean + ds * ds * square / 2;
+  next.model = std::make_unique<DisplacementModel>(
+      computation_.systems, computation_.distribution(), question.start, time_,
+      0.1 * question.accuracy, Tilt{next.s, next.log_size / time_});
+  ended_ = !next.model->resolved();
+  if (ended_) return false;
+  const auto size = transform(next, 0);
+  ended_ = !(size.value.real() > 2 * size.error);
+  if (ended_) return false;
+  next.scaled = size.value.real();
+  next.doubt = size.error / next.scaled;
+  next.log_size += std::log(next.scaled);
+  const double expected = last.mean + ds * square, k = probe / last.deviation;
+  const Complex turned = transform(next, k).value * std::polar(1.0, -k * expected);
+  next.mean = expected + std::arg(turned) / k;
+  next.deviation = std::sqrt(std::max(-2 * std::log(std::abs(turned)), 1e-6)) / k;
+  ended_ = side_ * (next.mean - last.mean) <= 0 || weights_.size() >= most ||
+           next.log_size - next.s * next.mean < kNothing;
+  weights_.push_back(std::move(next));
+  return true;
+}
+
+Uncertain DisplacementTail::by(Weight& weight, double d, OfInversion of) {
+  if (!weight.inversion) {
+    constexpr int most = 40;
+    weight.inversion.emplace([&](double k) { return transform(weight, k); }, weight.s, weight.mean,
+                             weight.deviation, 0.2 * computation_.question().accuracy, most);
+  }
+  const auto found = (*weight.inversion.*of)(d);
+  const Uncertain size{1, weight.doubt};
+  return std::exp(weight.log_size - weight.s * d) * (size * found);
+}
+
+Uncertain DisplacementTail::at(double d, OfInversion of) {
+  const auto bound = [&] { return weights_.back().log_size - weights_.back().s * d; };
+  const auto below = [&] { return side_ * (d - weights_.back().mean); };
+  while ((weights_.size() < 3 || below() > 0) && bound() > kNothing && add_weight()) {
+  }
+  if (weights_.size() < 3 || below() > kWithin * weights_.back().deviation) {
+    return {0, std::exp(bound())};
+  }
+  std::size_t n = 2;
+  while (n + 1 < weights_.size() && side_ * (weights_[n].mean - d) < 0) ++n;
+  Uncertain one = by(weights_[n - 1], d, of), other = by(weights_[n], d, of);
+  if (other.error < one.error) std::swap(one, other);
+  return {one.value, one.error + std::abs(one.value - other.value)};
+}
+
+double DisplacementTail::end(double p) {
+  const auto beyond_last = [&] {
+    const Weight& last = weights_.back();
+    return last.log_size - last.s * last.mean - std::log1p(2.5 * std::abs(last.s) * last.deviation);
+  };
+  while ((weights_.size() < 3 || beyond_last() > std::log(p)) && add_weight()) {
+  }
+  return weights_.back().mean + side_ * kWithin * weights_.back().deviation;
+}
+
+int DisplacementTail::evaluations() const {
+  int all = 0;
+  for (const Weight& weight : weights_) {
+    if (weight.model) all += 2;
+    if (weight.inversion) all += weight.inversion->evaluations();
+  }
+  return all;
+}
+
+namespace {
+
+using Inversion = FourierInversion;
 
 constexpr double kRootFound = 1e-9;  // of a probability at a quantile found
 constexpr double kPlace = 1e-11;     // relative error of the place of an atom
@@ -120,7 +290,7 @@ class Distribution {
     const auto& process = computation.process();
     even_ = model::mirrors_itself(process, question.start);
     const bool bounded = process.drag.bounds_velocity() || computation.problem.given.scene.v_max;
-    const auto probabilities = question.values(catalogue::kProbability.option);
+    const auto probabilities = question.values(cases::kProbability.option);
     weighs_ = bounded && std::any_of(probabilities.begin(), probabilities.end(),
                                      [](double p) { return std::min(p, 1 - p) < kTail; });
     if (!process.sticks() || question.start.kind == Start::Kind::state) centre_ = atoms_[0].at;
@@ -290,10 +460,10 @@ void Distribution::invert(double time) {
 
 void find_displacements(Computation& computation) {
   const auto& question = computation.question();
-  const auto probabilities = question.values(catalogue::kProbability.option);
+  const auto probabilities = question.values(cases::kProbability.option);
   auto& results = computation.results();
-  Result probability = array(catalogue::kDisplacementAtom, question.time),
-         position = array(catalogue::kDisplacementAtomAt, question.time);
+  Result probability = array(cases::kDisplacementAtom, question.time),
+         position = array(cases::kDisplacementAtomAt, question.time);
   for (double t : question.time) {
     const auto atoms = atoms_at(computation, t);
     Distribution distribution(computation, t, atoms);
@@ -305,9 +475,9 @@ void find_displacements(Computation& computation) {
       result.key = row.key_of(fmt::format("{}", t));
       // Near 0, where it is singular, no discretisation gives the digits of the distribution
       // function.
-      result.diagnostic = &row == &catalogue::kDisplacementDensity;
+      result.diagnostic = &row == &cases::kDisplacementDensity;
       result.tails_by_their_size =
-          &row == &catalogue::kDisplacementCdf && distribution.resolves_tails();
+          &row == &cases::kDisplacementCdf && distribution.resolves_tails();
       for (double x : abscissa) append_value(result, (distribution.*of)(x));
       if (!distribution.is_resolved()) {
         result.limited_by =
@@ -315,9 +485,9 @@ void find_displacements(Computation& computation) {
       }
       results.push_back(std::move(result));
     };
-    append(catalogue::kDisplacementDensity, question.distance, &Distribution::density);
-    append(catalogue::kDisplacementCdf, question.distance, &Distribution::cdf);
-    append(catalogue::kDisplacementQuantile, probabilities, &Distribution::quantile);
+    append(cases::kDisplacementDensity, question.distance, &Distribution::density);
+    append(cases::kDisplacementCdf, question.distance, &Distribution::cdf);
+    append(cases::kDisplacementQuantile, probabilities, &Distribution::quantile);
     computation.report("displacement_wavenumbers", distribution.evaluations(),
                        "wavenumbers at which the characteristic function was found");
   }

@@ -1,25 +1,24 @@
 #include "stickslip/quantities/durations.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <string>
 
-#include "stickslip/catalogue/duration_density_keys.hpp"
-#include "stickslip/catalogue/entry_law_keys.hpp"
-#include "stickslip/catalogue/laplace_keys.hpp"
-#include "stickslip/catalogue/phase_durations_keys.hpp"
-#include "stickslip/catalogue/sticking_keys.hpp"
-#include "stickslip/operators/static_chain.hpp"
-#include "stickslip/petsc/check.hpp"
+#include "stickslip/case/duration_rows.hpp"
+#include "stickslip/case/sticking_rows.hpp"
+#include "stickslip/generator/static_chain.hpp"
+#include "stickslip/linalg/petsc.hpp"
 #include "stickslip/quantities/plan.hpp"
 
 namespace stickslip::quantities {
 namespace {
 
-using operators::StaticPhase;
-using operators::Symmetry;
-using petsc::check;
+using generator::StaticPhase;
+using generator::Symmetry;
+using linalg::check;
 
 /// exp(Q t) for the static chain: at rate Lambda the noise jumps, or stays where it does so more
 /// slowly.
@@ -121,8 +120,8 @@ DurationDistribution stick_distribution(const model::Process& process,
 
 // f(t) = g exp(L t) r, g where excursions start, r = -L 1 the rate of ending where `static_phase`
 // kills.
-DurationDistribution distribution_until_killed(const std::string& name, operators::Systems& systems,
-                                               StaticPhase static_phase, operators::Clock clock,
+DurationDistribution distribution_until_killed(const std::string& name, generator::Systems& systems,
+                                               StaticPhase static_phase, generator::Clock clock,
                                                const StationaryDistribution& stationary,
                                                const std::vector<double>& time, double mean,
                                                const TimeScales& scales, double at_zero,
@@ -134,10 +133,10 @@ DurationDistribution distribution_until_killed(const std::string& name, operator
   DurationDistribution result;
   TimeCurve curve{{{}, {}}};
   if (!later.empty()) {
-    ProcessPencil pencil(systems, operators::symmetry_of(systems.process()), static_phase, clock);
+    ProcessPencil pencil(systems, generator::symmetry_of(systems.process()), static_phase, clock);
     const auto& a = pencil.a();
-    const petsc::VecHandle one = a.values([](double, double, double) { return 1.0; }),
-                           b = a.zeros(), c = stationary.starts_on(a), d = stationary.weight_on(a);
+    const linalg::VecHandle one = a.values([](double, double, double) { return 1.0; }),
+                            b = a.zeros(), c = stationary.starts_on(a), d = stationary.weight_on(a);
     check(MatMult(a.matrix(), one, b));
     for (Vec end : {Vec(b), Vec(c)}) pencil.by_clock(-1, end);
     curve = time_curve(pencil, {b, c, d}, ReducedModel::Nature::rough, {{0, 1 / mean}, {1, 1}},
@@ -152,23 +151,23 @@ DurationDistribution distribution_until_killed(const std::string& name, operator
   return result;
 }
 
-DurationDistribution slide_distribution(operators::Systems& systems,
+DurationDistribution slide_distribution(generator::Systems& systems,
                                         const StationaryDistribution& stationary,
                                         const std::vector<double>& time,
                                         const ModelTolerance& tolerance) {
   return distribution_until_killed(
-      "slide", systems, StaticPhase::killing, operators::Clock::time, stationary, time,
+      "slide", systems, StaticPhase::killing, generator::Clock::time, stationary, time,
       stationary.excursion().mean_slide(), time_scales(systems.process()),
       slide_density_at_zero(systems.process(), stationary.starts()), tolerance);
 }
 
 // No excursion ends at once: a sliding phase would have to, and then a sticking phase.
-DurationDistribution excursion_distribution(operators::Systems& systems,
+DurationDistribution excursion_distribution(generator::Systems& systems,
                                             const StationaryDistribution& stationary,
                                             const std::vector<double>& time,
                                             const ModelTolerance& tolerance) {
   return distribution_until_killed(
-      "excursion", systems, StaticPhase::killed_on_exit, operators::Clock::time, stationary, time,
+      "excursion", systems, StaticPhase::killed_on_exit, generator::Clock::time, stationary, time,
       stationary.excursion().mean_excursion(), time_scales(systems.process()), 0, tolerance);
 }
 
@@ -195,11 +194,11 @@ double slide_density_at_zero(const model::Process& process, const Starts& starts
   return density;
 }
 
-DurationMoments duration_moments(operators::Systems& systems,
+DurationMoments duration_moments(generator::Systems& systems,
                                  const StationaryDistribution& distribution,
                                  const std::vector<Uncertain>& entry) {
   const auto& process = systems.process();
-  const auto chain = operators::StaticChain::of(process);
+  const auto chain = generator::StaticChain::of(process);
   const auto once = chain.integral(std::vector<double>(entry.size(), 1.0));
   const auto twice = chain.integral(once);
   Uncertain stick, stick_square;
@@ -207,9 +206,9 @@ DurationMoments duration_moments(operators::Systems& systems,
     stick = stick + once[n] * entry[n];
     stick_square = stick_square + 2 * twice[n] * entry[n];
   }
-  auto& system = systems.at(0, operators::symmetry_of(process));
-  const petsc::VecHandle starts = distribution.starts_on(system.a());
-  const petsc::VecHandle ones = system.a().values([](double, double, double) { return 1.0; });
+  auto& system = systems.at(0, generator::symmetry_of(process));
+  const linalg::VecHandle starts = distribution.starts_on(system.a());
+  const linalg::VecHandle ones = system.a().values([](double, double, double) { return 1.0; });
   const auto slide = system.factors().solve(ones);
   const auto square = system.factors().solve(slide.x);
   const auto sticking = system.factors().solve(
@@ -233,19 +232,19 @@ void append_duration_moments(const model::Process& process, const Starts& starts
                                    [&](const Result& result) { return result.key == row.key; });
     if (!there) results.push_back(scalar(row, value));
   };
-  append(catalogue::kMeanSlide, moments.mean_slide);
-  append(catalogue::kMeanStick, moments.mean_stick);
-  append(catalogue::kMeanExcursion, moments.mean_excursion);
-  append(catalogue::kVarSlide, moments.var_slide);
-  append(catalogue::kVarStick, moments.var_stick);
-  append(catalogue::kVarExcursion, moments.var_excursion);
+  append(cases::kMeanSlide, moments.mean_slide);
+  append(cases::kMeanStick, moments.mean_stick);
+  append(cases::kMeanExcursion, moments.mean_excursion);
+  append(cases::kVarSlide, moments.var_slide);
+  append(cases::kVarStick, moments.var_stick);
+  append(cases::kVarExcursion, moments.var_excursion);
   std::vector<double> value, error;
   for (const auto& p : entry) {
     value.push_back(p.value);
     error.push_back(p.error);
   }
-  append(catalogue::kFSlide0, {slide_density_at_zero(process, starts), 0});
-  append(catalogue::kFStick0,
+  append(cases::kFSlide0, {slide_density_at_zero(process, starts), 0});
+  append(cases::kFStick0,
          {stick_density_at_zero(process, value), stick_density_at_zero(process, error)});
 }
 
@@ -259,7 +258,7 @@ void append_distribution(const Row& density_row, const Row& distribution_row,
 namespace {
 
 void find_distributions_of_phases(Computation& computation) {
-  using namespace catalogue;
+  using namespace cases;
   const auto& time = computation.question().time;
   const auto& distribution = computation.distribution();
   auto& results = computation.results();
@@ -274,7 +273,7 @@ void find_distributions_of_phases(Computation& computation) {
 }
 
 void find_distribution_of_excursions(Computation& computation) {
-  using namespace catalogue;
+  using namespace cases;
   const auto& time = computation.question().time;
   const auto excursion = excursion_distribution(computation.systems, computation.distribution(),
                                                 time, computation.tolerance());
@@ -297,7 +296,94 @@ void duration_density_tasks(Planner& planner) {
 }
 
 void phase_durations_tasks(Planner& planner) {
-  if (!planner.question().wants(catalogue::Quantity::duration_density)) add_phases(planner);
+  if (!planner.question().wants(cases::Quantity::duration_density)) add_phases(planner);
+}
+
+namespace {
+
+std::vector<double> stick_duration_transforms(const model::Process& process, double lambda) {
+  return generator::StaticChain::of(process, lambda).exit_transform();
+}
+
+void find_duration_moments(Computation& computation) {
+  const auto& distribution = computation.distribution();
+  const auto entry = distribution.entry();
+  const auto moments = duration_moments(computation.systems, distribution, entry);
+  append_duration_moments(computation.process(), distribution.starts(), moments, entry,
+                          computation.results());
+}
+
+}  // namespace
+
+Uncertain stick_transform(const model::Process& process, double lambda,
+                          const std::vector<Uncertain>& entry) {
+  const auto sticking = stick_duration_transforms(process, lambda);
+  Uncertain sum;
+  for (std::size_t n = 0; n < sticking.size(); ++n) sum = sum + sticking[n] * entry[n];
+  return sum;
+}
+
+void append_stick_transform(const model::Process& process, const std::vector<double>& lambda,
+                            const std::vector<Uncertain>& entry, Results& results) {
+  Result result = array(cases::kTransformStick, lambda);
+  for (double value : lambda) append_value(result, stick_transform(process, value, entry));
+  results.push_back(std::move(result));
+}
+
+void stick_transform_tasks(Planner& planner) {
+  if (planner.question().wants(cases::Quantity::laplace)) return;  // which has it, too
+  planner.need_distribution();
+  planner.add({"Laplace transforms of sticking phases", {}, [](Computation& computation) {
+                 append_stick_transform(computation.process(), computation.question().lambda,
+                                        computation.distribution().entry(), computation.results());
+               }});
+}
+
+SlidingTransforms sliding_transforms(generator::Systems& systems,
+                                     const StationaryDistribution& distribution, double lambda) {
+  const auto sticking = stick_duration_transforms(systems.process(), lambda);
+  auto& system = systems.at(lambda, generator::symmetry_of(systems.process()));
+  const linalg::VecHandle starts = distribution.starts_on(system.a());
+  const auto transform = [&](const std::vector<double>& values) {
+    const std::vector<PetscScalar> s(values.begin(), values.end());
+    return value_of(starts, system.factors().solve(system.a().from_static(s)));
+  };
+  return {transform(std::vector<double>(sticking.size(), 1.0)), transform(sticking)};
+}
+
+void append_laplace(const std::vector<double>& lambda,
+                    const std::vector<DurationTransforms>& transforms, Results& results) {
+  const auto append = [&](const Row& row, Uncertain DurationTransforms::*member) {
+    Result result = array(row, lambda);
+    for (const auto& t : transforms) append_value(result, t.*member);
+    results.push_back(std::move(result));
+  };
+  append(cases::kTransformSlide, &DurationTransforms::slide);
+  append(cases::kTransformStick, &DurationTransforms::stick);
+  append(cases::kTransformExcursion, &DurationTransforms::excursion);
+}
+
+void laplace_tasks(Planner& planner) {
+  planner.need_distribution();
+  planner.add({"moments of durations", {{planner.system(), 4, 0}}, find_duration_moments});
+  const auto found =
+      planner.collect<DurationTransforms>([](const auto& computation, const auto& all) {
+        append_laplace(computation.question().lambda, all, computation.results());
+      });
+  planner.add_at_each_lambda([&](double lambda) -> Task {
+    const auto find = [=](Computation& computation) {
+      const DurationTransforms none{kNoValue, kNoValue, kNoValue};
+      found->push_back(computation.value_or(none, [&]() -> DurationTransforms {
+        const auto& distribution = computation.distribution();
+        const auto t = sliding_transforms(computation.systems, distribution, lambda);
+        const auto stick = stick_transform(computation.process(), lambda, distribution.entry());
+        return {t.slide, stick, t.excursion};
+      }));
+    };
+    return {fmt::format("Laplace transforms at lambda = {:g}", lambda),
+            {{planner.system(lambda), 2, 0}},
+            find};
+  });
 }
 
 }  // namespace stickslip::quantities

@@ -7,9 +7,9 @@
 #include <limits>
 #include <numeric>
 
-#include "stickslip/catalogue/given_force_keys.hpp"
+#include "stickslip/base/text.hpp"
+#include "stickslip/case/force_rows.hpp"
 #include "stickslip/simulation/response.hpp"
-#include "stickslip/support/infinity.hpp"
 
 namespace stickslip::quantities {
 namespace {
@@ -114,9 +114,9 @@ class Compared {
 
 // What velocity, path and time are measured in where forces are in m/s^2.
 std::string unit_in(const std::string& of_force, const std::string& unit) {
-  if (unit == catalogue::kPathForce.unit) return of_force;
-  if (unit == catalogue::kPathVelocity.unit) return "m/s";
-  if (unit == catalogue::kPathDisplacement.unit) return "m";
+  if (unit == cases::kPathForce.unit) return of_force;
+  if (unit == cases::kPathVelocity.unit) return "m/s";
+  if (unit == cases::kPathDisplacement.unit) return "m";
   return unit.empty() ? unit : "s";
 }
 
@@ -127,7 +127,7 @@ std::string shortfall(const Results& results, bool alike, double accuracy) {
            "change -force_scale or -mu_s by little to see what either does";
   }
   for (const auto& result : results) {
-    if (result.key == catalogue::kFinalDisplacement.key) continue;
+    if (result.key == cases::kFinalDisplacement.key) continue;
     if (relative_error(result) <= accuracy) continue;
     return fmt::format("rounding limits the relative error of {} to {:.1e}; take -accuracy {:.0e}",
                        result.key, relative_error(result), 2 * relative_error(result));
@@ -148,23 +148,23 @@ std::string append_given_force(const model::Scene& scene, double accuracy, Resul
     compared.append(result, part);
     own.push_back(std::move(result));
   };
-  add(catalogue::kFinalDisplacement, [](const Response& r) { return r.x.back(); });
-  add(catalogue::kLargestDisplacement, [](const Response& r) { return r.farthest; });
-  add(catalogue::kLargestSpeed, [](const Response& r) { return r.fastest; });
-  add(catalogue::kSlidingShare, [&](const Response& r) { return r.sliding / duration; });
-  add(catalogue::kSlipCount, [](const Response& r) { return static_cast<double>(r.slips.size()); });
+  add(cases::kFinalDisplacement, [](const Response& r) { return r.x.back(); });
+  add(cases::kLargestDisplacement, [](const Response& r) { return r.farthest; });
+  add(cases::kLargestSpeed, [](const Response& r) { return r.fastest; });
+  add(cases::kSlidingShare, [&](const Response& r) { return r.sliding / duration; });
+  add(cases::kSlipCount, [](const Response& r) { return static_cast<double>(r.slips.size()); });
   if (compared.alike()) own.back().error = {0};
   if (!compared.found().slips.empty()) {
-    own.push_back(compared.of_slips(catalogue::kSlipBegin, &Slip::begin));
-    own.push_back(compared.of_slips(catalogue::kSlipEnd, &Slip::end));
-    own.push_back(compared.of_slips(catalogue::kSlipDisplacement, &Slip::displacement));
-    own.push_back(compared.of_slips(catalogue::kSlipPeak, &Slip::peak));
+    own.push_back(compared.of_slips(cases::kSlipBegin, &Slip::begin));
+    own.push_back(compared.of_slips(cases::kSlipEnd, &Slip::end));
+    own.push_back(compared.of_slips(cases::kSlipDisplacement, &Slip::displacement));
+    own.push_back(compared.of_slips(cases::kSlipPeak, &Slip::peak));
   }
-  own.push_back(array(catalogue::kPathForce, time));
+  own.push_back(array(cases::kPathForce, time));
   own.back().value = scene.force->force;
   own.back().error.assign(time.size(), 0.0);
-  own.push_back(compared.of_path(catalogue::kPathVelocity, time, &Response::v));
-  own.push_back(compared.of_path(catalogue::kPathDisplacement, time, &Response::x));
+  own.push_back(compared.of_path(cases::kPathVelocity, time, &Response::v));
+  own.push_back(compared.of_path(cases::kPathDisplacement, time, &Response::x));
   if (!scene.force->unit.empty()) {
     for (auto& result : own) result.unit = unit_in(scene.force->unit, result.unit);
   }

@@ -1,5 +1,3 @@
-#include "stickslip/catalogue/large_deviation_keys.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,23 +8,24 @@
 #include <tuple>
 #include <utility>
 
-#include "stickslip/operators/systems.hpp"
-#include "stickslip/petsc/check.hpp"
-#include "stickslip/petsc/vectors.hpp"
+#include "stickslip/base/text.hpp"
+#include "stickslip/case/displacement_rows.hpp"
+#include "stickslip/generator/resolvents.hpp"
+#include "stickslip/linalg/petsc.hpp"
+#include "stickslip/linalg/vectors.hpp"
 #include "stickslip/quantities/plan.hpp"
-#include "stickslip/quantities/uncertain.hpp"
-#include "stickslip/support/infinity.hpp"
+#include "stickslip/quantities/values.hpp"
 
 namespace stickslip::quantities {
 namespace {
 
-using operators::KolmogorovOperator;
-using operators::State;
-using operators::StateKind;
-using operators::StaticPhase;
-using operators::Symmetry;
-using petsc::check;
-using petsc::dot;
+using generator::KolmogorovOperator;
+using generator::State;
+using generator::StateKind;
+using generator::StaticPhase;
+using generator::Symmetry;
+using linalg::check;
+using linalg::dot;
 
 /// theta(s) and theta'(s) at one s.
 struct TiltedGrowth {
@@ -35,10 +34,10 @@ struct TiltedGrowth {
 
 /// A pair of vectors that become the eigenvectors of L + s v with the largest eigenvalue.
 struct Vectors {
-  petsc::VecHandle right, left;
+  linalg::VecHandle right, left;
 };
 
-petsc::VecHandle velocities(const KolmogorovOperator& a) {
+linalg::VecHandle velocities(const KolmogorovOperator& a) {
   return a.values([](double, double, double v) { return v; });
 }
 
@@ -55,7 +54,7 @@ void make_unit(Vec x) {
 // Share of the weighted paths that a truncation velocity holds back.
 double held(const KolmogorovOperator& a, const Vectors& of) {
   double sum = 0;
-  const petsc::ReadView right(of.right), left(of.left);
+  const linalg::ReadView right(of.right), left(of.left);
   PetscInt at = 0;
   a.states().for_each_local([&](const State& state) {
     if (state.kind == StateKind::holding) sum += PetscRealPart(left[at] * right[at]);
@@ -70,7 +69,7 @@ double held(const KolmogorovOperator& a, const Vectors& of) {
 // seen through their product alone, the probability of states on weighted paths.
 class Powers {
  public:
-  Powers(operators::Systems& systems, double s, double z) : systems_(systems) {
+  Powers(generator::Systems& systems, double s, double z) : systems_(systems) {
     key_.symmetry = Symmetry::none;
     key_.static_phase = StaticPhase::kept;
     key_.tilt = s;
@@ -91,14 +90,14 @@ class Powers {
     systems_.release(key_);
     key_.lambda = z;
   }
-  void restart() { vectors_ = {petsc::copy_of(reached_), petsc::copy_of(reached_)}; }
+  void restart() { vectors_ = {linalg::copy_of(reached_), linalg::copy_of(reached_)}; }
 
   // Whether z is above theta, and moves there. It is if and only if (z - L - s v) u = 1 has a
   // positive solution on all states: with the left eigenvector l of theta, which is positive, (z -
   // theta) (l, u) = (l, 1).
   bool is_above(double z) {
     move(z);
-    petsc::VecHandle u = a().zeros();
+    linalg::VecHandle u = a().zeros();
     systems_.at(key_).factors().solve_once(reached_, u);
     return positive(u);
   }
@@ -146,7 +145,7 @@ class Powers {
   }
 
   [[nodiscard]] double velocity() {
-    const petsc::VecHandle moving = product(velocities(a()), vectors_.right);
+    const linalg::VecHandle moving = product(velocities(a()), vectors_.right);
     return dot(vectors_.left, moving) / dot(vectors_.left, vectors_.right);
   }
   [[nodiscard]] double theta() const { return theta_; }
@@ -170,8 +169,8 @@ class Powers {
     return end == ends.end() ? kInfinity : *end;
   }
   void leave_unreached_out(Vec u) {
-    const petsc::ReadView reached(reached_);
-    petsc::WriteView values(u);
+    const linalg::ReadView reached(reached_);
+    linalg::WriteView values(u);
     for (PetscInt n = 0; n < values.size(); ++n) {
       if (PetscRealPart(reached[n]) == 0) values[n] = 0;
     }
@@ -181,7 +180,7 @@ class Powers {
   void compare(Vec weight, Vec before, Vec after, double mean) {
     double sums[] = {0, 0};
     {
-      const petsc::ReadView l(weight), r(before), w(after);
+      const linalg::ReadView l(weight), r(before), w(after);
       for (PetscInt n = 0; n < l.size(); ++n) {
         const double was = mean * PetscRealPart(l[n] * r[n]), is = PetscRealPart(l[n] * w[n]);
         sums[0] += std::abs(is - was);
@@ -197,11 +196,11 @@ class Powers {
     constexpr double ripple = 1e-2;
     const auto nodes = systems_.discretisation().velocities->nodes(),
                ends = systems_.discretisation().velocities->cells();
-    std::map<std::tuple<operators::Branch, int, std::ptrdiff_t>, std::pair<double, double>>
+    std::map<std::tuple<generator::Branch, int, std::ptrdiff_t>, std::pair<double, double>>
         extremes;
     int negative = 0;
     {
-      const petsc::ReadView values(u), reached(reached_);
+      const linalg::ReadView values(u), reached(reached_);
       PetscInt at = 0;
       a().states().for_each_local([&](const State& state) {
         const double value = PetscRealPart(values[at]);
@@ -222,9 +221,9 @@ class Powers {
     return negative == 0;
   }
 
-  operators::Systems& systems_;
-  operators::SystemKey key_;
-  petsc::VecHandle reached_;  // 1 on the states that bodies reach, 0 on others
+  generator::Systems& systems_;
+  generator::SystemKey key_;
+  linalg::VecHandle reached_;  // 1 on the states that bodies reach, 0 on others
   Vectors vectors_;
   double theta_ = 0, off_ = 1, fall_ = 1;
 };
@@ -282,7 +281,7 @@ std::optional<double> approach(Powers& powers, double below, double step, double
 // Next to theta each step makes the vectors a hundred times more accurate. The last one, which
 // changes nothing but rounding, shows the error. `recipe` holds z and z - theta of the refinement
 // level before. Nothing where the discretisation shows no largest eigenvalue.
-std::optional<TiltedGrowth> growth(operators::Systems& systems, double s, bool truncated,
+std::optional<TiltedGrowth> growth(generator::Systems& systems, double s, bool truncated,
                                    Recipe& recipe) {
   const double rate = 1 / systems.process().noise.correlation_time(),
                v_max = systems.discretisation().velocities->v_max(),
@@ -338,7 +337,7 @@ void leave_out_contradictions(std::map<double, TiltedGrowth>& known, double v_ma
 }
 
 void find_growth(Computation& computation) {
-  const auto tilts = computation.question().values(catalogue::kTilt.option);
+  const auto tilts = computation.question().values(cases::kTilt.option);
   const auto& scene = computation.problem.given.scene;
   std::map<double, TiltedGrowth> known;
   // Mirror images grow alike.
@@ -355,9 +354,8 @@ void find_growth(Computation& computation) {
   }
   leave_out_contradictions(known, computation.problem.discretisation.velocities->v_max(),
                            1 / computation.process().noise.correlation_time());
-  Result theta = array(catalogue::kTheta, tilts),
-         velocity = array(catalogue::kTiltedVelocity, tilts),
-         rate = array(catalogue::kRateFunction, tilts);
+  Result theta = array(cases::kTheta, tilts), velocity = array(cases::kTiltedVelocity, tilts),
+         rate = array(cases::kRateFunction, tilts);
   for (double s : tilts) {
     TiltedGrowth g = known[alike(s)];
     if (s != alike(s)) g.velocity.value = -g.velocity.value;
@@ -375,7 +373,7 @@ void find_growth(Computation& computation) {
 }  // namespace
 
 void large_deviation_tasks(Planner& planner) {
-  const auto& tilts = planner.question().values(catalogue::kTilt.option);
+  const auto& tilts = planner.question().values(cases::kTilt.option);
   planner.needs().rates.tilt = largest_size(tilts);
   const auto count = static_cast<int>(tilts.size());
   planner.add_adaptive("large deviations", 2 * count, 40 * count, find_growth);

@@ -1,20 +1,80 @@
 #include "stickslip/quantities/plan.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <numeric>
 
-#include "stickslip/catalogue/displacement_distribution_keys.hpp"
-#include "stickslip/catalogue/displacement_transform_keys.hpp"
-#include "stickslip/catalogue/first_passage_keys.hpp"
-#include "stickslip/catalogue/large_deviation_keys.hpp"
-#include "stickslip/catalogue/passage_distribution_keys.hpp"
-#include "stickslip/catalogue/phase_durations_keys.hpp"
-#include "stickslip/quantities/stationary.hpp"
-#include "stickslip/quantities/time_functions.hpp"
+#include "stickslip/case/displacement_rows.hpp"
+#include "stickslip/case/duration_rows.hpp"
+#include "stickslip/case/passage_rows.hpp"
+#include "stickslip/linalg/petsc.hpp"
+#include "stickslip/linalg/session.hpp"
+#include "stickslip/quantities/engines/excursions.hpp"
+#include "stickslip/quantities/engines/propagator.hpp"
+#include "stickslip/quantities/values.hpp"
 
 namespace stickslip::quantities {
+namespace {
 
-using catalogue::Quantity;
+using cases::Quantity;
+
+}  // namespace
+
+std::string reason_to_go_on(MPI_Comm comm) {
+  const Failure failure = linalg::failure_in_flight();
+  const bool ends_all =
+      failure.status() == ExitStatus::no_memory || failure.status() == ExitStatus::bad_input;
+  if (linalg::ranks(comm) > 1 || ends_all) throw;
+  return failure.what();
+}
+
+void attempt(const Problem& problem, Evaluation& evaluation, cases::Quantity quantity,
+             const std::function<void()>& work) {
+  if (evaluation.failed.contains(quantity)) return;
+  try {
+    work();
+  } catch (...) {
+    evaluation.failed[quantity] = reason_to_go_on(problem.comm);
+  }
+}
+
+namespace {
+
+// What the results of a row are called: one for each observable, time or speed.
+std::vector<std::string> keys_of(const Row& row, const cases::Question& question) {
+  if (!row.is_pattern()) return {std::string(row.key)};
+  std::vector<std::string> keys;
+  const bool of_time = row.key.ends_with("(t)"), of_speed = row.key.ends_with("(w)");
+  for (double value : of_time ? question.time : question.velocity) {
+    if (of_time || of_speed) keys.push_back(row.key_of(fmt::format("{}", value)));
+  }
+  for (const auto& f : question.observables) {
+    if (!of_time && !of_speed) keys.push_back(row.key_of(f.name));
+  }
+  return keys;
+}
+
+}  // namespace
+
+Results without_values(const cases::Case& given, cases::Quantity quantity,
+                       const std::string& reason) {
+  Results results;
+  const auto& entry = **std::ranges::find(cases::entries(), quantity, &cases::Entry::quantity);
+  for (const Row* row : entry.rows) {
+    if (row->without.contains(given.method.route)) continue;
+    for (const auto& key : keys_of(*row, given.question)) {
+      Result result = array(*row, given.question.values(row->abscissa));
+      result.key = key;
+      result.unreached = reason;
+      const std::size_t count = result.is_scalar() ? 1 : result.abscissa.size();
+      for (std::size_t n = 0; n < count; ++n) append_value(result, kNoValue);
+      if (count > 0) results.push_back(std::move(result));
+    }
+  }
+  return results;
+}
+
 using Tasks = void(Planner&);
 
 Tasks sticking_tasks, mean_slip_tasks, moments_tasks, density_tasks, averages_tasks,
@@ -40,25 +100,25 @@ constexpr std::pair<Quantity, Tasks*> kAll[] = {
     {Quantity::resolvent, resolvent_tasks},
     {Quantity::spectrum, spectrum_tasks},
     {Quantity::duration_density, duration_density_tasks},
-    {catalogue::kPhaseDurations.quantity, phase_durations_tasks},
+    {cases::kPhaseDurations.quantity, phase_durations_tasks},
     {Quantity::slip, slip_tasks},
     {Quantity::peak, peak_tasks},
-    {catalogue::kFirstPassageTime.quantity, first_passage_tasks},
-    {catalogue::kPassageTimeTransform.quantity, passage_transform_tasks},
-    {catalogue::kPassageTimeDistribution.quantity, passage_distribution_tasks},
+    {cases::kFirstPassageTime.quantity, first_passage_tasks},
+    {cases::kPassageTimeTransform.quantity, passage_transform_tasks},
+    {cases::kPassageTimeDistribution.quantity, passage_distribution_tasks},
     {Quantity::displacement, displacement_tasks},
     {Quantity::autocorrelation, autocorrelation_tasks},
     {Quantity::expectation, expectation_tasks},
     {Quantity::relaxation, relaxation_tasks},
-    {catalogue::own_quantity("noise_spectrum"), noise_spectrum_tasks},
-    {catalogue::kLargeDeviation.quantity, large_deviation_tasks},
-    {catalogue::kDisplacementTransform.quantity, displacement_transform_tasks},
-    {catalogue::kDisplacementDistribution.quantity, displacement_distribution_tasks}};
+    {cases::own_quantity("noise_spectrum"), noise_spectrum_tasks},
+    {cases::kLargeDeviation.quantity, large_deviation_tasks},
+    {cases::kDisplacementTransform.quantity, displacement_transform_tasks},
+    {cases::kDisplacementDistribution.quantity, displacement_distribution_tasks}};
 
 }  // namespace
 
-std::set<operators::SystemKey> Plan::used_from(std::size_t first) const {
-  std::set<operators::SystemKey> used;
+std::set<generator::SystemKey> Plan::used_from(std::size_t first) const {
+  std::set<generator::SystemKey> used;
   for (std::size_t n = first; n < tasks.size(); ++n) {
     for (const Use& use : tasks[n].uses) used.insert(use.system);
   }
@@ -80,8 +140,8 @@ int Plan::solves() const {
 
 bool Plan::adaptive() const { return std::ranges::any_of(tasks, &Task::adaptive); }
 
-operators::SystemKey Planner::system(double lambda) const {
-  return {lambda, operators::symmetry_of(given_.scene.process(1))};
+generator::SystemKey Planner::system(double lambda) const {
+  return {lambda, generator::symmetry_of(given_.scene.process(1))};
 }
 
 void Planner::append_from(const FunctionOfExcursion& append) {
@@ -146,7 +206,7 @@ Plan plan_of(const cases::Case& given) {
     add_tasks(planner);
   }
   Plan plan = std::move(planner).plan();
-  if (given.method.route != catalogue::Route::excursion) return {.needs = std::move(plan.needs)};
+  if (given.method.route != cases::Route::excursion) return {.needs = std::move(plan.needs)};
   return plan;
 }
 

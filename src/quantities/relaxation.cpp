@@ -2,22 +2,21 @@
 
 #include <algorithm>
 
-#include "stickslip/catalogue/relaxation_keys.hpp"
-#include "stickslip/operators/solver_policy.hpp"
-#include "stickslip/operators/systems.hpp"
-#include "stickslip/petsc/eigensolver.hpp"
-#include "stickslip/petsc/scalars.hpp"
-#include "stickslip/petsc/vectors.hpp"
+#include "stickslip/case/spectrum_rows.hpp"
+#include "stickslip/generator/resolvents.hpp"
+#include "stickslip/generator/solver_policy.hpp"
+#include "stickslip/linalg/eigensolver.hpp"
+#include "stickslip/linalg/vectors.hpp"
 #include "stickslip/quantities/plan.hpp"
 
 namespace stickslip::quantities {
 namespace {
 
-using operators::Branch;
-using operators::State;
-using operators::StateKind;
-using operators::Symmetry;
-using petsc::Eigenpair;
+using generator::Branch;
+using generator::State;
+using generator::StateKind;
+using generator::Symmetry;
+using linalg::Eigenpair;
 
 constexpr int kAskedFor = 8;
 // Perturbing a matrix by eps moves a defective double eigenvalue by about sqrt(eps). Rounding,
@@ -25,15 +24,15 @@ constexpr int kAskedFor = 8;
 // part of the rate is taken for a frequency.
 constexpr double kLeastFrequency = 1e-5;
 
-std::complex<double> entry(const petsc::ReadView& real, const petsc::ReadView& imaginary,
+std::complex<double> entry(const linalg::ReadView& real, const linalg::ReadView& imaginary,
                            PetscInt n) {
-  if (petsc::kComplex) return {PetscRealPart(real[n]), PetscImaginaryPart(real[n])};
+  if (linalg::kComplex) return {PetscRealPart(real[n]), PetscImaginaryPart(real[n])};
   return {PetscRealPart(real[n]), PetscRealPart(imaginary[n])};
 }
 
 // Factor that turns the entry of largest modulus into 1, so that modes look alike on every run.
-std::complex<double> scale_of(MPI_Comm comm, const petsc::ReadView& real,
-                              const petsc::ReadView& imaginary) {
+std::complex<double> scale_of(MPI_Comm comm, const linalg::ReadView& real,
+                              const linalg::ReadView& imaginary) {
   struct {
     double size = -1;
     int rank = 0;
@@ -66,7 +65,7 @@ double spread_of(std::complex<double> rate, const std::vector<Eigenpair>& pairs)
   return spread;
 }
 
-RelaxationMode mode_of(const operators::Systems& systems, const operators::StateSpace& states,
+RelaxationMode mode_of(const generator::Systems& systems, const generator::StateSpace& states,
                        const Eigenpair& pair) {
   const bool real_rate = !oscillates(pair.value);
   const double sign = states.symmetry() == Symmetry::odd ? -1 : 1;
@@ -75,7 +74,7 @@ RelaxationMode mode_of(const operators::Systems& systems, const operators::State
   RelaxationMode mode{pair.value, pair.residual, 0, empty, empty, {}};
   if (real_rate) mode.rate = pair.value.real();
   mode.at_rest.resize(systems.process().highest_static() - lowest + 1);
-  const petsc::ReadView real(pair.real), imaginary(pair.imaginary);
+  const linalg::ReadView real(pair.real), imaginary(pair.imaginary);
   const auto scale = scale_of(systems.comm(), real, imaginary);
   PetscInt at = 0;
   states.for_each_local([&](const State& state) {
@@ -87,7 +86,7 @@ RelaxationMode mode_of(const operators::Systems& systems, const operators::State
         mode.imaginary.add(branch, state.noise, state.node, factor * value.imag());
       };
       add(state.branch, 1);
-      if (states.symmetry_reduced()) add(operators::opposite(state.branch), sign);
+      if (states.symmetry_reduced()) add(generator::opposite(state.branch), sign);
     } else if (state.kind == StateKind::static_phase) {
       mode.at_rest[state.noise - lowest] = value;
       if (states.symmetry_reduced()) mode.at_rest[-state.noise - lowest] = sign * value;
@@ -120,15 +119,16 @@ std::vector<const Eigenpair*> chosen(const std::vector<Eigenpair>& pairs, Symmet
 
 }  // namespace
 
-RelaxationSector relaxation_modes(operators::Systems& systems, Symmetry symmetry) {
+RelaxationSector relaxation_modes(generator::Systems& systems, Symmetry symmetry) {
   const auto& process = systems.process();
-  const auto a = operators::assemble(systems.comm(), systems.discretisation(), 0, symmetry,
-                                     operators::StaticPhase::kept, systems.statistics());
+  const auto a = generator::assemble(systems.comm(), systems.discretisation(), 0, symmetry,
+                                     generator::StaticPhase::kept, systems.statistics());
   // All rates have real parts >= 0; a target left of them, on the scale of the noise.
   const double target = -0.1 / process.noise.correlation_time();
-  const petsc::Eigensolver solver(a.matrix(), kRelaxPrefix, target, kAskedFor, systems.statistics(),
-                                  {[&a](PetscScalar at) { return a.shifted(-at); },
-                                   operators::default_pc_type(systems.discretisation())});
+  const linalg::Eigensolver solver(a.matrix(), kRelaxPrefix, target, kAskedFor,
+                                   systems.statistics(),
+                                   {[&a](PetscScalar at) { return a.shifted(-at); },
+                                    generator::default_pc_type(systems.discretisation())});
   std::vector<RelaxationMode> modes;
   for (const auto* pair : chosen(solver.pairs(), symmetry)) {
     modes.push_back(mode_of(systems, a.states(), *pair));
@@ -138,7 +138,7 @@ RelaxationSector relaxation_modes(operators::Systems& systems, Symmetry symmetry
 }
 
 RelaxationRows relaxation_rows(Symmetry symmetry) {
-  using namespace catalogue;
+  using namespace cases;
   switch (symmetry) {
   case Symmetry::even: return {kRelaxationEven, kRelaxationEvenFrequency};
   case Symmetry::odd: return {kRelaxationOdd, kRelaxationOddFrequency};
@@ -168,7 +168,7 @@ void relaxation_tasks(Planner& planner) {
   planner.needs().modes = true;
   const int sectors = planner.symmetric() ? 2 : 1;
   planner.add_adaptive("relaxation modes", sectors, 28 * sectors, [](Computation& computation) {
-    for (Symmetry symmetry : operators::sectors_of(computation.process())) {
+    for (Symmetry symmetry : generator::sectors_of(computation.process())) {
       auto& modes = computation.found.modes;
       modes.push_back(relaxation_modes(computation.systems, symmetry));
       append_relaxation(modes.back(), computation.results());

@@ -6,9 +6,16 @@
 #include <cmath>
 #include <utility>
 
-#include "stickslip/support/infinity.hpp"
+#include "stickslip/base/text.hpp"
+#include "stickslip/linalg/vectors.hpp"
+#include "stickslip/quantities/values.hpp"
 
 namespace stickslip::quantities {
+
+Uncertain value_of(Vec functional, const linalg::Solution& solution) {
+  return {linalg::dot(functional, solution.x),
+          std::abs(linalg::dot(functional, solution.correction))};
+}
 
 namespace {
 

@@ -6,30 +6,27 @@
 #include <cmath>
 #include <numeric>
 
-#include "stickslip/catalogue/moments_keys.hpp"
-#include "stickslip/catalogue/noise_law_keys.hpp"
-#include "stickslip/catalogue/sensitivity_keys.hpp"
-#include "stickslip/catalogue/sticking_keys.hpp"
-#include "stickslip/effects/effect.hpp"
-#include "stickslip/effects/model_options.hpp"
+#include "stickslip/case/sensitivity_rows.hpp"
+#include "stickslip/case/sticking_rows.hpp"
+#include "stickslip/generator/static_chain.hpp"
+#include "stickslip/linalg/petsc.hpp"
+#include "stickslip/linalg/vectors.hpp"
+#include "stickslip/model/effect.hpp"
 #include "stickslip/model/noise_chain.hpp"
-#include "stickslip/model/unit.hpp"
-#include "stickslip/operators/static_chain.hpp"
-#include "stickslip/petsc/check.hpp"
-#include "stickslip/petsc/vectors.hpp"
-#include "stickslip/quantities/discounted_starts.hpp"
+#include "stickslip/model/observable.hpp"
+#include "stickslip/quantities/engines/excursions.hpp"
 #include "stickslip/quantities/plan.hpp"
 
 namespace stickslip::quantities {
 namespace {
 
-using operators::KolmogorovOperator;
-using operators::Symmetry;
+using generator::KolmogorovOperator;
+using generator::Symmetry;
 
 // `option` is the one that sets the parameter.
 Result derivative(const Row& of, std::string_view option, Uncertain value) {
   const auto& by = effects::model_option(option);
-  Result result = scalar(catalogue::kDerivative, value);
+  Result result = scalar(cases::kDerivative, value);
   result.key = fmt::format("d{}_d{}", of.key, by.name);
   result.unit = (model::Unit::parse(of.unit) / model::Unit::parse(by.unit)).text();
   return result;
@@ -83,16 +80,16 @@ ByTau static_phase_by_tau(const model::Process& process, const std::vector<doubl
 
 }  // namespace
 
-Sensitivity::Sensitivity(operators::Systems& systems, const StationaryDistribution& distribution,
+Sensitivity::Sensitivity(generator::Systems& systems, const StationaryDistribution& distribution,
                          std::vector<model::Derivative> parameters)
-    : system_(systems.at(0, operators::symmetry_of(systems.process()))),
+    : system_(systems.at(0, generator::symmetry_of(systems.process()))),
       distribution_(distribution),
       parameters_(std::move(parameters)) {
-  const auto chain = operators::StaticChain::of(systems.process());
+  const auto chain = generator::StaticChain::of(systems.process());
   for (int start : distribution.starts().levels) exits_.push_back(chain.exit_transform_to(start));
-  const Symmetry symmetry = operators::symmetry_of(systems.process());
+  const Symmetry symmetry = generator::symmetry_of(systems.process());
   for (const auto& theta : parameters_) {
-    changes_.push_back(operators::assemble_derivative(systems.comm(), systems.discretisation(),
+    changes_.push_back(generator::assemble_derivative(systems.comm(), systems.discretisation(),
                                                       symmetry, theta, systems.statistics()));
   }
   slide_ = sliding_mean([](double, double, double) { return 1.0; });
@@ -107,7 +104,7 @@ Sensitivity::Gradient Sensitivity::sliding_mean(const KolmogorovOperator::Observ
 Sensitivity::Gradient Sensitivity::sticking_mean() const {
   const auto& process = distribution_.process();
   const auto& stick_time = distribution_.excursion().stick_time;
-  const auto chain = operators::StaticChain::of(process);
+  const auto chain = generator::StaticChain::of(process);
   const auto mean = chain.integral(std::vector<double>(stick_time.size(), 1.0));
   // On a single static level all sticking phases have one distribution, whatever the sliding
   // phases.
@@ -127,13 +124,13 @@ Sensitivity::Gradient Sensitivity::sticking_mean() const {
 }
 
 // What the level from which the next excursion starts adds, by start, of a mean h.
-std::vector<double> Sensitivity::worth_of_starts(const petsc::Solution& h) const {
+std::vector<double> Sensitivity::worth_of_starts(const linalg::Solution& h) const {
   const auto& starts = distribution_.starts();
   const std::size_t count = starts.size();
   std::vector<Uncertain> means;
   std::vector<std::vector<Uncertain>> next(count);
   for (std::size_t t = 0; t < count; ++t) {
-    means.push_back({petsc::dot(system_.a().trace_at_start(starts.levels[t]), h.x), 0});
+    means.push_back({linalg::dot(system_.a().trace_at_start(starts.levels[t]), h.x), 0});
     for (std::size_t u = 0; u < count; ++u) next[t].push_back({starts.next[t * count + u], 0});
   }
   const std::vector<Uncertain> ones(count, {1, 0});
@@ -142,7 +139,7 @@ std::vector<double> Sensitivity::worth_of_starts(const petsc::Solution& h) const
   return worth;
 }
 
-Sensitivity::Gradient Sensitivity::through(petsc::Solution h, const std::vector<double>& s) const {
+Sensitivity::Gradient Sensitivity::through(linalg::Solution h, const std::vector<double>& s) const {
   std::vector<PetscScalar> values(s.begin(), s.end());
   double upper_side = 0;
   if (exits_.size() > 1) {
@@ -153,19 +150,19 @@ Sensitivity::Gradient Sensitivity::through(petsc::Solution h, const std::vector<
       for (std::size_t n = 0; n < next.size(); ++n) next[n] += worth[t] * exits_[t][n];
     }
     const auto more = system_.factors().solve(system_.a().from_static(next));
-    petsc::check(VecAXPY(h.x, 1, more.x));
-    petsc::check(VecAXPY(h.correction, 1, more.correction));
+    linalg::check(VecAXPY(h.x, 1, more.x));
+    linalg::check(VecAXPY(h.correction, 1, more.correction));
     for (std::size_t n = 0; n < next.size(); ++n) values[n] += next[n];
   }
   Gradient gradient;
   for (std::size_t n = 0; n < changes_.size(); ++n) {
     const auto& change = changes_[n];
-    petsc::VecHandle image = change.zeros();
+    linalg::VecHandle image = change.zeros();
     const auto flux = [&](Vec function) {
-      petsc::check(MatMult(change.matrix(), function, image));
-      return -petsc::dot(distribution_.occupation(), image);
+      linalg::check(MatMult(change.matrix(), function, image));
+      return -linalg::dot(distribution_.occupation(), image);
     };
-    const double moved = petsc::dot(distribution_.occupation(), change.from_static(values));
+    const double moved = linalg::dot(distribution_.occupation(), change.from_static(values));
     const double chain =
         !parameters_[n].is_of_jumps()
             ? 0
@@ -203,25 +200,25 @@ void Sensitivity::append_sticking(Results& results) const {
     sliding.push_back((1 / total) * (down - up));
     whole.push_back(slide_[n] + stick_[n]);
   }
-  append(catalogue::kPStick, sticking, results);
-  append(catalogue::kPSlide, sliding, results);
-  append(catalogue::kMeanStick, stick_, results);
-  append(catalogue::kMeanSlide, slide_, results);
-  append(catalogue::kMeanExcursion, whole, results);
+  append(cases::kPStick, sticking, results);
+  append(cases::kPSlide, sliding, results);
+  append(cases::kMeanStick, stick_, results);
+  append(cases::kMeanSlide, slide_, results);
+  append(cases::kMeanExcursion, whole, results);
 }
 
 void Sensitivity::append_moments(Results& results) const {
   const auto mean = [this](const KolmogorovOperator::Observable& f) {
-    return petsc::dot(distribution_.occupation(), system_.a().values(f));
+    return linalg::dot(distribution_.occupation(), system_.a().values(f));
   };
   const auto add = [&](const Row& row, const KolmogorovOperator::Observable& f) {
     append(row, ratio(mean(f), sliding_mean(f)), results);
   };
-  add(catalogue::kEV2, [](double, double, double v) { return v * v; });
-  add(catalogue::kEAbsV, [](double, double, double v) { return std::abs(v); });
-  add(catalogue::kEXV, [](double x, double, double v) { return x * v; });
+  add(cases::kEV2, [](double, double, double v) { return v * v; });
+  add(cases::kEAbsV, [](double, double, double v) { return std::abs(v); });
+  add(cases::kEXV, [](double x, double, double v) { return x * v; });
   if (distribution_.process().drifts()) {
-    add(catalogue::kEV, [](double, double, double v) { return v; });
+    add(cases::kEV, [](double, double, double v) { return v; });
   }
 }
 
@@ -249,8 +246,8 @@ void append_noise_sensitivity(const model::Process& process, Results& results) {
   const double rounding = model::rounding_of_sums(noise);
   const double size = std::abs(square_score) + std::abs(square * mean_score);
   const double within_size = std::abs(beyond * within_score) + std::abs(within * beyond_score);
-  results.push_back(derivative(catalogue::kPWithin, "tau", {by_within, rounding * within_size}));
-  results.push_back(derivative(catalogue::kEX2, "tau", {by_square, rounding * size}));
+  results.push_back(derivative(cases::kPWithin, "tau", {by_within, rounding * within_size}));
+  results.push_back(derivative(cases::kEX2, "tau", {by_square, rounding * size}));
 }
 
 namespace {
@@ -277,7 +274,7 @@ void set_scales(const model::Scene& scene, const std::vector<model::Derivative>&
 // With a single static level mean_stick needs none. Where excursions start from several levels each
 // has a second one, by that of the next excursion.
 void sensitivity_tasks(Planner& planner) {
-  using catalogue::Quantity;
+  using cases::Quantity;
   const bool sticking = planner.question().wants(Quantity::sticking),
              moments = planner.question().wants(Quantity::moments);
   if (!moments && !sticking) return;

@@ -5,17 +5,17 @@
 #include <cmath>
 #include <numeric>
 
-#include "stickslip/catalogue/slip_keys.hpp"
-#include "stickslip/petsc/check.hpp"
+#include "stickslip/case/slip_rows.hpp"
+#include "stickslip/linalg/petsc.hpp"
 #include "stickslip/quantities/plan.hpp"
 
 namespace stickslip::quantities {
 namespace {
 
-using operators::Clock;
-using operators::StaticPhase;
-using operators::Symmetry;
-using petsc::check;
+using generator::Clock;
+using generator::StaticPhase;
+using generator::Symmetry;
+using linalg::check;
 
 double mean_path(const Excursion& excursion) {
   const auto& distance = excursion.slide_distance;
@@ -26,14 +26,14 @@ double speed(double, double, double v) { return std::abs(v); }
 
 }  // namespace
 
-SlipMoments slip_moments(operators::Systems& systems, const StationaryDistribution& distribution) {
-  const Symmetry symmetry = operators::symmetry_of(systems.process());
+SlipMoments slip_moments(generator::Systems& systems, const StationaryDistribution& distribution) {
+  const Symmetry symmetry = generator::symmetry_of(systems.process());
   auto& system = systems.at(0, symmetry);
   // Of the other symmetry, if there is one; its sliding states come in the same order.
   auto& other = symmetry == Symmetry::even ? systems.at(0, Symmetry::odd) : system;
-  const petsc::VecHandle starts = distribution.starts_on(system.a());
-  const auto mean_square = [&](auto& inner, const operators::KolmogorovOperator::Observable& f) {
-    const petsc::VecHandle weight = inner.a().values(f);
+  const linalg::VecHandle starts = distribution.starts_on(system.a());
+  const auto mean_square = [&](auto& inner, const generator::KolmogorovOperator::Observable& f) {
+    const linalg::VecHandle weight = inner.a().values(f);
     auto once = inner.factors().solve(weight);
     const Uncertain mean = value_of(starts, once);
     check(VecPointwiseMult(once.x, once.x, weight));
@@ -46,18 +46,18 @@ SlipMoments slip_moments(operators::Systems& systems, const StationaryDistributi
   return {square - mean * mean, net, net_square - net * net};
 }
 
-Uncertain slip_transform(operators::Systems& systems, const StationaryDistribution& distribution,
+Uncertain slip_transform(generator::Systems& systems, const StationaryDistribution& distribution,
                          double s) {
   const auto& process = systems.process();
   auto& system =
-      systems.at({s, operators::symmetry_of(process), StaticPhase::killing, Clock::path_length});
+      systems.at({s, generator::symmetry_of(process), StaticPhase::killing, Clock::path_length});
   const int levels = process.highest_static() - process.lowest_static() + 1;
   const auto ended =
       system.a().from_static(std::vector<PetscScalar>(static_cast<std::size_t>(levels), 1.0));
   return value_of(distribution.starts_on(system.a()), system.factors().solve(ended));
 }
 
-DurationDistribution slip_distribution(operators::Systems& systems,
+DurationDistribution slip_distribution(generator::Systems& systems,
                                        const StationaryDistribution& distribution,
                                        const std::vector<double>& distance,
                                        const ModelTolerance& tolerance) {
@@ -70,7 +70,7 @@ DurationDistribution slip_distribution(operators::Systems& systems,
 }
 
 void append_mean_slip(const Excursion& excursion, Results& results) {
-  results.push_back(scalar(catalogue::kMeanSlip, mean_path(excursion), 0));
+  results.push_back(scalar(cases::kMeanSlip, mean_path(excursion), 0));
 }
 
 namespace {
@@ -79,17 +79,16 @@ void find_moments(Computation& computation) {
   const auto moments = slip_moments(computation.systems, computation.distribution());
   const Uncertain net = computation.process().drifts() ? moments.net_mean : Uncertain{};
   auto& results = computation.results();
-  results.push_back(scalar(catalogue::kVarSlip, moments.variance));
-  results.push_back(scalar(catalogue::kMeanSlipNet, net));
-  results.push_back(scalar(catalogue::kVarSlipNet, moments.net_variance));
+  results.push_back(scalar(cases::kVarSlip, moments.variance));
+  results.push_back(scalar(cases::kMeanSlipNet, net));
+  results.push_back(scalar(cases::kVarSlipNet, moments.net_variance));
 }
 
 void find_distribution(Computation& computation) {
   const auto& distance = computation.question().distance;
   const auto slips = slip_distribution(computation.systems, computation.distribution(), distance,
                                        computation.tolerance());
-  append_distribution(catalogue::kDensitySlip, catalogue::kCdfSlip, distance, slips,
-                      computation.results());
+  append_distribution(cases::kDensitySlip, cases::kCdfSlip, distance, slips, computation.results());
   computation.report("slip_pairs", slips.pairs,
                      "pairs of Krylov vectors in the reduced model of slips");
 }
@@ -121,7 +120,7 @@ void slip_tasks(Planner& planner) {
   planner.needs().rates.lengths = !question.distance.empty() || !question.inverse_distance.empty();
   const auto found =
       planner.collect<Uncertain>([](const Computation& computation, const auto& all) {
-        append_array(array(catalogue::kTransformSlip, computation.question().inverse_distance), all,
+        append_array(array(cases::kTransformSlip, computation.question().inverse_distance), all,
                      computation.results());
       });
   for (double s : question.inverse_distance) {

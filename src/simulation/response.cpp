@@ -1,13 +1,14 @@
 #include "stickslip/simulation/response.hpp"
 
-#include <array>
 #include <boost/math/tools/toms748_solve.hpp>
+
+#include <array>
 #include <cstdint>
 #include <optional>
 
-#include "stickslip/model/grid_index.hpp"
-#include "stickslip/simulation/drag_table.hpp"
-#include "stickslip/support/infinity.hpp"
+#include "stickslip/base/text.hpp"
+#include "stickslip/model/noise_chain.hpp"
+#include "stickslip/simulation/flow.hpp"
 
 namespace stickslip::simulation {
 namespace {

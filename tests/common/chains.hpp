@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "stickslip/model/scene.hpp"
+#include "stickslip/model/process.hpp"
 
 namespace stickslip::test {
 

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "stickslip/algebra/dense.hpp"
+#include "stickslip/linalg/dense.hpp"
 #include "stickslip/model/process.hpp"
 
 namespace stickslip::test {
@@ -29,7 +29,7 @@ class FullGrid {
   }
 
   [[nodiscard]] int size() const { return m_.rows(); }
-  [[nodiscard]] const algebra::Matrix<double>& generator() const { return m_; }
+  [[nodiscard]] const linalg::Matrix<double>& generator() const { return m_; }
   [[nodiscard]] bool is_static(int i, int j) const { return j == 0 && std::abs(i) <= k_; }
   [[nodiscard]] int index(int i, int j) const { return (i + n_) * (2 * j_ + 1) + j + j_; }
   /// Calls visit(i, j, v, index) for all states.
@@ -42,25 +42,25 @@ class FullGrid {
 
   /// pi M = 0, sum pi = 1.
   [[nodiscard]] std::vector<double> stationary() const {
-    algebra::Matrix<double> a = m_;
+    linalg::Matrix<double> a = m_;
     std::vector<double> pi(static_cast<std::size_t>(size()), 0.0);
     std::fill_n(a.column(0), size(), 1.0);  // replaces one redundant equation
     pi[0] = 1;
-    algebra::LuFactors(std::move(a)).solve(pi, true);
+    linalg::LuFactors(std::move(a)).solve(pi, true);
     return pi;
   }
 
   /// E_{s+}[f at the first static state], s+ = (x_{k+1}, 0+).
   template <class Value>
   [[nodiscard]] double mean_at_rest(Value f) const {
-    algebra::Matrix<double> a = m_;
+    linalg::Matrix<double> a = m_;
     std::vector<double> mean(static_cast<std::size_t>(size()), 0.0);
     for_each([&](int i, int j, double, int s) {
       if (!is_static(i, j)) return;
       for (int c = 0; c < size(); ++c) a(s, c) = c == s;
       mean[s] = f(i);
     });
-    algebra::LuFactors(std::move(a)).solve(mean, false);
+    linalg::LuFactors(std::move(a)).solve(mean, false);
     return mean[index(k_ + 1, 0)];
   }
 
@@ -86,7 +86,7 @@ class FullGrid {
   model::Process process_;
   double spacing_;
   int n_, j_, k_;
-  algebra::Matrix<double> m_;
+  linalg::Matrix<double> m_;
 };
 
 }  // namespace stickslip::test

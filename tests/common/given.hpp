@@ -7,9 +7,8 @@
 #include <utility>
 
 #include "catch.hpp"
-#include "stickslip/effects/model_options.hpp"
-#include "stickslip/effects/read_scene.hpp"
-#include "stickslip/support/number_text.hpp"
+#include "stickslip/base/text.hpp"
+#include "stickslip/model/effect.hpp"
 
 namespace stickslip::test {
 

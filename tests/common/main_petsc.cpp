@@ -8,16 +8,15 @@
 #include <sstream>
 
 #include "catch.hpp"
-#include "stickslip/operators/element_pc.hpp"
-#include "stickslip/petsc/blas.hpp"
-#include "stickslip/petsc/session.hpp"
+#include "stickslip/generator/solver_policy.hpp"
+#include "stickslip/linalg/session.hpp"
 
 int main(int argc, char** argv) {
   int petsc_argc = 1;  // Catch2's flags are no PETSc options; those come by PETSC_OPTIONS
-  const stickslip::petsc::Session session(petsc_argc, argv);
-  stickslip::petsc::keep_blas_to_one_thread();
-  stickslip::operators::register_preconditioners();
-  const int rank = stickslip::petsc::rank(MPI_COMM_WORLD);
+  const stickslip::linalg::Session session(petsc_argc, argv);
+  stickslip::linalg::keep_blas_to_one_thread();
+  stickslip::generator::register_preconditioners();
+  const int rank = stickslip::linalg::rank(MPI_COMM_WORLD);
 
   std::ostringstream quiet;
   std::streambuf* const terminal = std::cout.rdbuf();

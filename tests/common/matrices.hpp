@@ -7,17 +7,17 @@
 #include <utility>
 #include <vector>
 
-#include "stickslip/petsc/check.hpp"
-#include "stickslip/petsc/handle.hpp"
+#include "stickslip/linalg/petsc.hpp"
+#include "stickslip/linalg/vectors.hpp"
 
 namespace stickslip::test {
 
 using Row = std::vector<std::pair<PetscInt, double>>;  // columns and values
 
 /// n x n on all ranks, row(r) lists the entries of row r. Collective.
-inline petsc::MatHandle matrix(PetscInt n, const std::function<Row(PetscInt)>& row) {
-  using petsc::check;
-  petsc::MatHandle a;
+inline linalg::MatHandle matrix(PetscInt n, const std::function<Row(PetscInt)>& row) {
+  using linalg::check;
+  linalg::MatHandle a;
   check(MatCreate(PETSC_COMM_WORLD, a.out()));
   check(MatSetSizes(a, PETSC_DECIDE, PETSC_DECIDE, n, n));
   check(MatSetType(a, MATAIJ));

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "stickslip/petsc/check.hpp"
+#include "stickslip/linalg/petsc.hpp"
 
 namespace stickslip::test {
 
@@ -20,7 +20,7 @@ class Given {
   explicit Given(std::vector<std::pair<std::string, std::string>> options)
       : options_(std::move(options)) {
     for (const auto& [name, value] : options_) {
-      petsc::check(PetscOptionsSetValue(nullptr, name.c_str(), value.c_str()));
+      linalg::check(PetscOptionsSetValue(nullptr, name.c_str(), value.c_str()));
     }
   }
   ~Given() {

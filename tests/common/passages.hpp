@@ -2,20 +2,20 @@
 /// Passages of a speed, by hand.
 
 #include "scenes.hpp"
-#include "stickslip/model/passage.hpp"
-#include "stickslip/operators/discretisation.hpp"
-#include "stickslip/operators/system_key.hpp"
+#include "stickslip/generator/discretisation.hpp"
+#include "stickslip/generator/system_key.hpp"
+#include "stickslip/model/process.hpp"
 
 namespace stickslip::test {
 
 inline model::Scene passing(double bias = 0) { return biased(scene(1, 0.5, 1, 0.5, {1, 0}), bias); }
 
-inline operators::SystemKey passage_key(const model::Process& process, model::Passage passage,
+inline generator::SystemKey passage_key(const model::Process& process, model::Passage passage,
                                         double w) {
-  operators::SystemKey key{0, operators::symmetry_of(process)};
+  generator::SystemKey key{0, generator::symmetry_of(process)};
   key.speed_limit = w;
   key.passage = passage;
-  if (passage != model::Passage::both) key.symmetry = operators::Symmetry::none;
+  if (passage != model::Passage::both) key.symmetry = generator::Symmetry::none;
   return key;
 }
 

@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-#include "stickslip/model/force_record.hpp"
+#include "stickslip/model/process.hpp"
 
 namespace stickslip::test {
 

@@ -4,8 +4,8 @@
 #include <memory>
 #include <vector>
 
-#include "stickslip/accuracy/resolution.hpp"
-#include "stickslip/model/scene.hpp"
+#include "stickslip/model/process.hpp"
+#include "stickslip/run/discretise.hpp"
 
 namespace stickslip::test {
 
@@ -46,23 +46,22 @@ inline model::Scene on_full_noise(model::Scene s) {
   return s;
 }
 
-using Discrete = operators::Discretisation;
+using Discrete = generator::Discretisation;
 
 /// hp with noise range and truncation velocity for errors of `tolerance`.
 inline Discrete on_hp(const model::Scene& s, int degree, double tolerance = 1e-12) {
-  return accuracy::discretise(s, accuracy::hp_resolution(s, degree, 0, tolerance));
+  return run::discretise(s, run::hp_resolution(s, degree, 0, tolerance));
 }
 
 /// The same on noise nodes.
 inline Discrete on_nodes(const model::Scene& s, int degree, int noise_degree,
                          double tolerance = 1e-12) {
-  return accuracy::discretise(s,
-                              accuracy::hp_resolution(s, degree, 0, tolerance, {}, {noise_degree}));
+  return run::discretise(s, run::hp_resolution(s, degree, 0, tolerance, {}, {noise_degree}));
 }
 
 /// Upwind with `points` nodes per noise step.
 inline Discrete on_upwind(const model::Scene& s, int points, double tolerance = 1e-8) {
-  return accuracy::discretise(s, accuracy::upwind_resolution(s, points, tolerance));
+  return run::discretise(s, run::upwind_resolution(s, points, tolerance));
 }
 
 }  // namespace stickslip::test

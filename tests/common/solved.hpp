@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "scenes.hpp"
-#include "stickslip/operators/systems.hpp"
-#include "stickslip/quantities/stationary.hpp"
-#include "stickslip/quantities/uncertain.hpp"
+#include "stickslip/generator/resolvents.hpp"
+#include "stickslip/quantities/engines/excursions.hpp"
+#include "stickslip/quantities/values.hpp"
 
 namespace stickslip::test {
 
@@ -29,8 +29,8 @@ struct Solved {
     return sum / distribution.excursion().mean_excursion();
   }
 
-  petsc::SolverStatistics statistics;
-  operators::Systems systems;
+  linalg::SolverStatistics statistics;
+  generator::Systems systems;
   quantities::StationaryDistribution distribution;
 };
 

@@ -4,19 +4,19 @@
 #include <vector>
 
 #include "scenes.hpp"
-#include "stickslip/operators/kolmogorov_operator.hpp"
+#include "stickslip/generator/generator.hpp"
 
 namespace stickslip::test {
 
 struct System {
   model::Scene scene;
-  operators::Symmetry symmetry;
-  operators::StaticPhase static_phase;
+  generator::Symmetry symmetry;
+  generator::StaticPhase static_phase;
 };
 
 inline std::vector<System> killed_systems() {
-  using operators::StaticPhase;
-  using operators::Symmetry;
+  using generator::StaticPhase;
+  using generator::Symmetry;
   const auto plain = scene(1, 0.25, 1, 0.25, {1, 0});
   auto biased = plain, driven = plain;
   auto three_levels = scene(0.3, 0.2, 1, 0.5, {1, 0}), five_levels = three_levels;

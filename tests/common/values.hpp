@@ -4,7 +4,7 @@
 #include <map>
 #include <string>
 
-#include "stickslip/accuracy/carry_out.hpp"
+#include "stickslip/run/carry_out.hpp"
 
 namespace stickslip::test {
 
@@ -18,7 +18,7 @@ inline double sigma(const quantities::Result& simulated, std::size_t n) {
 /// Collective.
 inline Values values(const cases::Case& c) {
   Values by_key;
-  for (const auto& r : accuracy::carry_out(PETSC_COMM_WORLD, c, {}).results) by_key[r.key] = r;
+  for (const auto& r : run::carry_out(PETSC_COMM_WORLD, c, {}).results) by_key[r.key] = r;
   return by_key;
 }
 

@@ -2,10 +2,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "stickslip/outputs/report.hpp"
-#include "stickslip/support/atomic_file.hpp"
+#include "stickslip/base/files.hpp"
+#include "stickslip/cli/output.hpp"
 
-namespace stickslip::outputs {
+namespace stickslip::cli {
 namespace {
 
 void write_markdown(const Report& report, const std::string& file) {
@@ -28,4 +28,4 @@ extern const Output kMarkdown{.option = "markdown",
                               .subjects = {Subject::run},
                               .write = write_markdown};
 
-}  // namespace stickslip::outputs
+}  // namespace stickslip::cli

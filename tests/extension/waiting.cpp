@@ -12,8 +12,7 @@ void waiting_tasks(Planner& planner) {
                      duration_moments(computation.systems, distribution, distribution.entry());
                  const Uncertain mean = durations.mean_excursion,
                                  square = durations.var_excursion + mean * mean;
-                 computation.results().push_back(
-                     scalar(catalogue::kMeanWaiting, 0.5 * square / mean));
+                 computation.results().push_back(scalar(cases::kMeanWaiting, 0.5 * square / mean));
                }});
 }
 

@@ -1,9 +1,9 @@
 #pragma once
 /// The quantity waiting: mean time from any moment to the next start of a sliding phase.
 
-#include "stickslip/catalogue/entry.hpp"
+#include "stickslip/case/entry.hpp"
 
-namespace stickslip::catalogue {
+namespace stickslip::cases {
 
 inline constexpr Row kMeanWaiting{
     .key = "mean_waiting",
@@ -23,4 +23,4 @@ inline constexpr Entry kWaiting{.quantity = own_quantity("waiting"),
                                 .rows = kWaitingRows,
                                 .of_phases = true};
 
-}  // namespace stickslip::catalogue
+}  // namespace stickslip::cases

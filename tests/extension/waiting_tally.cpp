@@ -4,7 +4,7 @@
 namespace stickslip::simulation {
 
 void waiting_tally(Tally& tally) {
-  tally.over_time(catalogue::kMeanWaiting, [](const Excursion& excursion) {
+  tally.over_time(cases::kMeanWaiting, [](const Excursion& excursion) {
     const double duration = excursion.slide + excursion.stick;
     return duration * duration / 2;
   });

@@ -21,19 +21,19 @@
 
 #include "../common/temporary.hpp"
 #include "mutation.hpp"
-#include "stickslip/model/drag_law.hpp"
+#include "stickslip/base/errors.hpp"
+#include "stickslip/base/files.hpp"
+#include "stickslip/base/text.hpp"
+#include "stickslip/cli/hdf5_file.hpp"
+#include "stickslip/cli/output.hpp"
+#include "stickslip/cli/reports.hpp"
+#include "stickslip/cli/request.hpp"
+#include "stickslip/generator/solver_policy.hpp"
+#include "stickslip/linalg/petsc.hpp"
+#include "stickslip/linalg/session.hpp"
+#include "stickslip/model/drag.hpp"
 #include "stickslip/model/observable.hpp"
-#include "stickslip/monte_carlo/simulate.hpp"
-#include "stickslip/operators/element_pc.hpp"
-#include "stickslip/options/request.hpp"
-#include "stickslip/outputs/hdf5_file.hpp"
-#include "stickslip/outputs/reference.hpp"
-#include "stickslip/petsc/check.hpp"
-#include "stickslip/petsc/session.hpp"
-#include "stickslip/support/errors.hpp"
-#include "stickslip/support/seal.hpp"
-#include "stickslip/support/text.hpp"
-#include "stickslip/sweeps/sweep_report.hpp"
+#include "stickslip/run/campaign.hpp"
 
 using namespace stickslip;
 using Json = nlohmann::ordered_json;
@@ -44,8 +44,8 @@ namespace {
 class Options {
  public:
   Options() {
-    petsc::check(PetscOptionsCreate(&options_));
-    petsc::check(PetscOptionsPush(options_));
+    linalg::check(PetscOptionsCreate(&options_));
+    linalg::check(PetscOptionsPush(options_));
   }
   ~Options() {
     (void)PetscOptionsPop();
@@ -61,28 +61,28 @@ class Options {
 /// What PETSc itself refuses as the program starts, which then ends with status 2.
 void at_start(PetscErrorCode code) {
   try {
-    petsc::check(code);
-  } catch (const petsc::PetscFailure& failure) {
+    linalg::check(code);
+  } catch (const linalg::PetscFailure& failure) {
     throw BadInput(failure.what());
   }
 }
 
-options::Request request_of_file(const std::string& file) {
+cli::Request request_of_file(const std::string& file) {
   const Options options;
-  options::check_options_files({"-options_file", file});
+  cli::check_options_files({"-options_file", file});
   const PetscErrorCode code =
       PetscOptionsInsertFile(PETSC_COMM_SELF, nullptr, file.c_str(), PETSC_TRUE);
   at_start(code);
-  return options::read_request({});
+  return cli::read_request({});
 }
 
 // A word in each line of the text.
-options::Request request_of_line(const std::string& line) {
+cli::Request request_of_line(const std::string& line) {
   std::vector<std::string> words = split(line.substr(0, line.find('\0')), '\n');
   if (!words.empty() && words.back().empty()) words.pop_back();
   words.insert(words.begin(), {"program", "-skip_petscrc"});
-  options::shield_formulas(words);
-  options::check_options_files(words);
+  cli::shield_formulas(words);
+  cli::check_options_files(words);
   const Options options;
   std::vector<char*> arguments;
   for (auto& word : words) arguments.push_back(word.data());
@@ -91,7 +91,7 @@ options::Request request_of_line(const std::string& line) {
   char** values = arguments.data();
   const PetscErrorCode code = PetscOptionsInsert(nullptr, &count, &values, nullptr);
   at_start(code);
-  return options::read_request({words.begin() + 2, words.end()});
+  return cli::read_request({words.begin() + 2, words.end()});
 }
 
 /// One kind of input. `read` gets it in a file, and returns if it is taken.
@@ -187,21 +187,21 @@ class Corpus {
 
   std::string checkpoint() const {
     const std::string file = folder_ / "seed.checkpoint";
-    (void)monte_carlo::simulate(PETSC_COMM_SELF, simulation(), file, {});
+    (void)run::simulate(PETSC_COMM_SELF, simulation(), file, {});
     return test::content(file);
   }
-  static options::Request simulation() {
+  static cli::Request simulation() {
     return request_of_line(std::string(kScene) +
                            "sticking\n-route\nmonte_carlo\n-excursions\n16384");
   }
 
   std::string sweep_checkpoint() const {
-    options::Request request = sweep();
+    cli::Request request = sweep();
     request.files.checkpoint = folder_ / "seed.sweep";
-    (void)sweeps::run_sweep(PETSC_COMM_SELF, request, {});
+    (void)cli::run_sweep(PETSC_COMM_SELF, request, {});
     return test::content(request.files.checkpoint);
   }
-  static options::Request sweep() {
+  static cli::Request sweep() {
     return request_of_line(std::string(kScene) +
                            "sticking,laplace\n-lambda\n0.5,2\n-sweep_tau\n0.5,1");
   }
@@ -215,7 +215,7 @@ class Corpus {
 
   std::string hdf5() const {
     const std::string file = folder_ / "seed.h5";
-    outputs::Hdf5File out(PETSC_COMM_SELF, file);
+    cli::Hdf5File out(PETSC_COMM_SELF, file);
     for (const char* group : {"/results", "/results/P_stick", "/results/F_slide"}) {
       out.make_group(group);
     }
@@ -281,15 +281,15 @@ void use(const model::Drag& drag) {
 
 // What the reports do with a finished point that was read.
 void report(const std::string& file) {
-  static const options::Request request = Corpus::sweep();
-  sweeps::SweepResult conducted;
+  static const cli::Request request = Corpus::sweep();
+  cli::SweepResult conducted;
   try {
-    conducted.runs.push_back(sweeps::read_run(test::content(file)));
+    conducted.runs.push_back(cli::read_run(test::content(file)));
   } catch (const std::exception& refusal) {
     throw BadInput(refusal.what());
   }
   if (conducted.runs[0].point >= request.sweep->size()) return;
-  const auto report = sweeps::report_of(PETSC_COMM_SELF, request, conducted, {});
+  const auto report = cli::report_of(PETSC_COMM_SELF, request, conducted, {});
   (void)report.tree();
   (void)report.rows();
   (void)report.grid();
@@ -306,19 +306,19 @@ void keeps_file_when_refused(const std::string& file, Work work) {
   }
 }
 
-void go_on_with(options::Request request, const std::string& file) {
+void go_on_with(cli::Request request, const std::string& file) {
   request.files.checkpoint = file;
   keeps_file_when_refused(file, [&] {
     if (request.sweep) {
-      (void)sweeps::run_sweep(PETSC_COMM_SELF, request, {});
+      (void)cli::run_sweep(PETSC_COMM_SELF, request, {});
     } else {
-      (void)monte_carlo::simulate(PETSC_COMM_SELF, request, file, {});
+      (void)run::simulate(PETSC_COMM_SELF, request, file, {});
     }
   });
 }
 
 std::vector<Target> targets(const Corpus& corpus) {
-  const auto references = [](const std::string& file) { (void)outputs::read_references(file); };
+  const auto references = [](const std::string& file) { (void)cli::read_references(file); };
   const model::Friction friction{1, 0.5};
   return {
       {"options file", ".opts", 22, option_files(), by_text,
@@ -422,8 +422,8 @@ int main(int argc, char** argv) {
   const std::size_t inputs = argc > 1 ? std::stoul(argv[1]) : 10000;
   const std::uint64_t seed = argc > 2 ? std::stoul(argv[2]) : 1;
   int petsc_argc = 1;
-  const petsc::Session session(petsc_argc, argv);
-  operators::register_preconditioners();
+  const linalg::Session session(petsc_argc, argv);
+  generator::register_preconditioners();
   (void)std::signal(SIGALRM, report_hang);
   const test::TemporaryFolder folder;
   std::cout << fmt::format("{:14} {:>7} {:>7} {:>7} {:>7}\n", "input", "all", "taken", "refused",

@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "../common/catch.hpp"
-#include "stickslip/model/breaks.hpp"
+#include "stickslip/model/expression.hpp"
 
 using stickslip::model::Break;
 using stickslip::model::Expression;

@@ -1,7 +1,7 @@
 #include <cmath>
 
 #include "../common/catch.hpp"
-#include "stickslip/model/drag_law.hpp"
+#include "stickslip/model/drag.hpp"
 
 using stickslip::model::Drag;
 using stickslip::model::parse_drag;

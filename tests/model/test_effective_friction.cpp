@@ -1,4 +1,4 @@
-#include "stickslip/model/effective_friction.hpp"
+#include "stickslip/model/process.hpp"
 
 #include <memory>
 #include <vector>

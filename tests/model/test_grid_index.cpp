@@ -1,8 +1,8 @@
 #include <stdexcept>
 
 #include "../common/catch.hpp"
-#include "stickslip/model/friction.hpp"
-#include "stickslip/model/grid_index.hpp"
+#include "stickslip/model/drag.hpp"
+#include "stickslip/model/noise_chain.hpp"
 #include "stickslip/model/process.hpp"
 
 using stickslip::model::floor_index;

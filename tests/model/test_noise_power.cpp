@@ -3,7 +3,7 @@
 #include "../common/chains.hpp"
 #include "../common/given.hpp"
 #include "../common/near.hpp"
-#include "stickslip/model/noise_power.hpp"
+#include "stickslip/model/noise_chain.hpp"
 
 using namespace stickslip;
 using test::relative_difference;

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "../common/catch.hpp"
+#include "stickslip/base/errors.hpp"
 #include "stickslip/model/observable.hpp"
-#include "stickslip/model/scene.hpp"
-#include "stickslip/support/errors.hpp"
+#include "stickslip/model/process.hpp"
 
 using stickslip::model::Friction;
 using stickslip::model::Observable;

@@ -1,5 +1,5 @@
 #include "../common/catch.hpp"
-#include "stickslip/model/unit.hpp"
+#include "stickslip/model/observable.hpp"
 
 #include <stdexcept>
 

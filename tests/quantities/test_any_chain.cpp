@@ -6,11 +6,11 @@
 #include "../common/near.hpp"
 #include "../common/scenes.hpp"
 #include "../common/values.hpp"
-#include "stickslip/accuracy/refinement.hpp"
+#include "stickslip/run/refine.hpp"
 
 using namespace stickslip;
-using catalogue::Quantity;
-using catalogue::Route;
+using cases::Quantity;
+using cases::Route;
 using test::relative_difference;
 using test::Values;
 using test::values;

@@ -4,15 +4,15 @@
 #include "../common/catch.hpp"
 #include "../common/near.hpp"
 #include "../common/scenes.hpp"
-#include "stickslip/exact/fluid_queue.hpp"
-#include "stickslip/petsc/check.hpp"
-#include "stickslip/quantities/resolvent.hpp"
-#include "stickslip/quantities/stationary.hpp"
-#include "stickslip/routes/evaluation.hpp"
+#include "stickslip/linalg/petsc.hpp"
+#include "stickslip/quantities/engines/excursions.hpp"
+#include "stickslip/quantities/spectra.hpp"
+#include "stickslip/run/evaluation.hpp"
+#include "stickslip/run/fluid_queue.hpp"
 
 using namespace stickslip;
-using catalogue::Quantity;
-using catalogue::Route;
+using cases::Quantity;
+using cases::Route;
 using test::relative_difference;
 using test::scene;
 
@@ -57,9 +57,9 @@ cases::Case everything(const model::Scene& s, bool mirrored = false) {
 }
 
 Values evaluated(const cases::Case& c, const test::Discrete& d) {
-  petsc::SolverStatistics statistics;
+  linalg::SolverStatistics statistics;
   Values values;
-  for (const auto& r : routes::evaluate({PETSC_COMM_WORLD, c, d, statistics}).results) {
+  for (const auto& r : run::evaluate({PETSC_COMM_WORLD, c, d, statistics}).results) {
     values[r.key] = r.value;
     if (is_rough(r.key)) values[r.key + kError] = r.error;
   }
@@ -224,15 +224,15 @@ TEST_CASE("asymmetry: the solution methods agree") {
 TEST_CASE("asymmetry: the representation formula gives the resolvent of the whole process") {
   const auto s = asymmetric();
   for (const auto& d : {test::on_hp(s, 5, 1e-9), test::on_upwind(s, 3)}) {
-    petsc::SolverStatistics statistics;
-    operators::Systems systems(PETSC_COMM_WORLD, d, statistics);
+    linalg::SolverStatistics statistics;
+    generator::Systems systems(PETSC_COMM_WORLD, d, statistics);
     std::vector<model::Observable> f;
     for (const auto& pair : kObservables) {
       f.push_back(model::parse_observable(pair[0], s.friction));
     }
     for (double lambda : {1e-3, 1.0, 1e2}) {
       const auto r = quantities::resolvent(systems, lambda, f);
-      auto& whole = systems.at(lambda, operators::Symmetry::none, operators::StaticPhase::kept);
+      auto& whole = systems.at(lambda, generator::Symmetry::none, generator::StaticPhase::kept);
       for (std::size_t n = 0; n < f.size(); ++n) {
         const auto u = whole.factors().solve(whole.a().values(f[n].value));
         INFO(f[n].name << " at lambda " << lambda);
@@ -240,10 +240,10 @@ TEST_CASE("asymmetry: the representation formula gives the resolvent of the whol
                                   r.of[n].u.value) < 1e-10);
         CHECK(
             relative_difference(
-                quantities::value_of(whole.a().trace_at_exit(operators::Branch::negative), u).value,
+                quantities::value_of(whole.a().trace_at_exit(generator::Branch::negative), u).value,
                 r.of[n].u_from_minus.value) < 1e-10);
       }
-      systems.release({lambda, operators::Symmetry::none, operators::StaticPhase::kept});
+      systems.release({lambda, generator::Symmetry::none, generator::StaticPhase::kept});
     }
   }
 }

@@ -6,8 +6,8 @@
 #include "../common/solved.hpp"
 #include "stickslip/model/noise_chain.hpp"
 #include "stickslip/quantities/density.hpp"
-#include "stickslip/quantities/spectrum.hpp"
-#include "stickslip/routes/evaluation.hpp"
+#include "stickslip/quantities/spectra.hpp"
+#include "stickslip/run/evaluation.hpp"
 
 using namespace stickslip;
 using quantities::Results;
@@ -146,15 +146,15 @@ TEST_CASE("bias: the excursions agree with the null vector") {
       const auto d = test::on_upwind(s, 3);
       cases::Case r;
       r.scene = s;
-      r.question.quantities = {catalogue::Quantity::sticking, catalogue::Quantity::moments};
-      petsc::SolverStatistics statistics;
-      const auto evaluate = [&](catalogue::Route route) {
+      r.question.quantities = {cases::Quantity::sticking, cases::Quantity::moments};
+      linalg::SolverStatistics statistics;
+      const auto evaluate = [&](cases::Route route) {
         r.method.route = route;
-        return routes::evaluate({PETSC_COMM_WORLD, r, d, statistics}).results;
+        return run::evaluate({PETSC_COMM_WORLD, r, d, statistics}).results;
       };
-      const auto excursions = evaluate(catalogue::Route::excursion);
+      const auto excursions = evaluate(cases::Route::excursion);
       std::map<std::string, double> found;
-      for (const auto& result : evaluate(catalogue::Route::null_vector)) {
+      for (const auto& result : evaluate(cases::Route::null_vector)) {
         found[result.key] = result.value[0];
       }
       for (const auto& result : excursions) {

@@ -4,11 +4,11 @@
 #include "../common/catch.hpp"
 #include "../common/scenes.hpp"
 #include "../common/values.hpp"
-#include "stickslip/accuracy/carry_out.hpp"
-#include "stickslip/catalogue/displacement_distribution_keys.hpp"
+#include "stickslip/case/displacement_rows.hpp"
+#include "stickslip/run/carry_out.hpp"
 
 using namespace stickslip;
-using catalogue::Quantity;
+using cases::Quantity;
 using test::Values;
 using test::values_at_the_time;
 using Kind = model::Start::Kind;
@@ -21,7 +21,7 @@ cases::Case asking(const model::Scene& s, const std::vector<double>& distance, d
                    double accuracy, const model::Start& start = kStationary) {
   cases::Case c;
   c.scene = s;
-  c.question.quantities = {catalogue::kDisplacementDistribution.quantity};
+  c.question.quantities = {cases::kDisplacementDistribution.quantity};
   c.question.distance = distance;
   c.question.arguments["probability"] = {0.5, 0.9};
   c.question.time = {time};
@@ -229,7 +229,7 @@ TEST_CASE("displacement distribution: simulated, within 4.5 sigma", "[real][long
     c.question.arguments["probability"] = {0.1, 0.4, 0.9};
     const auto found = values_at_the_time(c);
     c.method.degree.reset();
-    c.method.route = catalogue::Route::monte_carlo;
+    c.method.route = cases::Route::monte_carlo;
     c.method.excursions = 20000;
     const auto sampled = values_at_the_time(c);
     const auto &cdf = found.at("displacement_cdf"), &r = sampled.at("displacement_cdf");
@@ -259,7 +259,7 @@ TEST_CASE("displacement distribution: speeds that are not reached by the time co
   auto c = asking(test::biased(test::scene(1, 0.4657, 1.518, 0.4657, {0, 0}), 0.0734), {}, 1.102,
                   2e-2, kRest);
   c.method.degree = 3;
-  const auto total = accuracy::carry_out(PETSC_COMM_WORLD, c, {}).total;
+  const auto total = run::carry_out(PETSC_COMM_WORLD, c, {}).total;
   INFO(total.solves << " solves with " << total.factorizations_complex << " complex factors");
   CHECK(total.factorizations_complex > 10);
   CHECK(total.solves < 40 * total.factorizations_complex);

@@ -5,11 +5,11 @@
 #include "../common/catch.hpp"
 #include "../common/scenes.hpp"
 #include "../common/values.hpp"
-#include "stickslip/accuracy/refinement.hpp"
-#include "stickslip/catalogue/displacement_transform_keys.hpp"
+#include "stickslip/case/displacement_rows.hpp"
+#include "stickslip/run/refine.hpp"
 
 using namespace stickslip;
-using catalogue::Quantity;
+using cases::Quantity;
 using test::Values;
 using test::values_at_the_time;
 using Complex = std::complex<double>;
@@ -21,7 +21,7 @@ cases::Case asking(const model::Scene& s, const std::vector<double>& wavenumbers
                    double accuracy, model::Start start = {0, 0, Kind::stationary}) {
   cases::Case c;
   c.scene = s;
-  c.question.quantities = {catalogue::kDisplacementTransform.quantity};
+  c.question.quantities = {cases::kDisplacementTransform.quantity};
   c.question.arguments["wavenumber"] = wavenumbers;
   c.question.time = {time};
   c.question.start = start;
@@ -42,7 +42,7 @@ Transform transform(const Values& found, std::size_t n) {
 Values check_simulated(cases::Case c) {
   auto found = values_at_the_time(c);
   c.method = {};
-  c.method.route = catalogue::Route::monte_carlo;
+  c.method.route = cases::Route::monte_carlo;
   c.method.excursions = 20000;
   const auto sampled = values_at_the_time(c);
   for (const char* key : {"displacement_cosine", "displacement_sine"}) {

@@ -8,22 +8,21 @@
 #include "../common/near.hpp"
 #include "../common/quadrature.hpp"
 #include "../common/solved.hpp"
-#include "stickslip/algebra/dense.hpp"
-#include "stickslip/catalogue/phase_durations_keys.hpp"
-#include "stickslip/petsc/check.hpp"
+#include "stickslip/case/duration_rows.hpp"
+#include "stickslip/generator/velocity_methods.hpp"
+#include "stickslip/linalg/dense.hpp"
+#include "stickslip/linalg/petsc.hpp"
 #include "stickslip/quantities/durations.hpp"
-#include "stickslip/quantities/laplace.hpp"
-#include "stickslip/velocity/upwind_discretisation.hpp"
 
 using namespace stickslip;
-using operators::Branch;
-using operators::KolmogorovOperator;
-using operators::StaticPhase;
-using operators::Symmetry;
-using petsc::check;
+using generator::Branch;
+using generator::KolmogorovOperator;
+using generator::StaticPhase;
+using generator::Symmetry;
+using linalg::check;
 using quantities::DurationDistribution;
 using quantities::Uncertain;
-using Matrix = algebra::Matrix<double>;
+using Matrix = linalg::Matrix<double>;
 using test::relative_difference;
 using test::scene;
 using test::Solved;
@@ -101,7 +100,7 @@ class DenseDurations {
   }
 
   [[nodiscard]] double density(double time) const {
-    return (algebra::exponential(m_, time) * rates_)[start_];
+    return (linalg::exponential(m_, time) * rates_)[start_];
   }
   [[nodiscard]] double distribution(double time) const {
     // What has ended is no state here; at rest, the static states still are.
@@ -111,7 +110,7 @@ class DenseDurations {
       for (int c = 0; c < n; ++c) all(r, c) = m_(r, c);
       all(r, n) = rates_[r];
     }
-    return algebra::exponential(all, time)(start_, n);
+    return linalg::exponential(all, time)(start_, n);
   }
 
  private:
@@ -235,7 +234,8 @@ TEST_CASE("durations: upwind equals dense exponentials on the whole grid", "[par
     const int k = process.highest_static();
     const DenseDurations slide(grid, k, DenseDurations::Ends::at_rest);
     const DenseDurations excursion(grid, k, DenseDurations::Ends::after_rest);
-    Solved s({process, std::make_shared<velocity::UpwindDiscretisation>(spacing, c.nodes, c.drag)});
+    Solved s(
+        {process, std::make_shared<generator::UpwindDiscretisation>(spacing, c.nodes, c.drag)});
     const auto all = distributions(s, time, 1e-10);
     for (std::size_t n = 0; n < time.size(); ++n) {
       INFO("mu_d " << c.mu_d << " time " << time[n]);
@@ -282,7 +282,7 @@ TEST_CASE("durations: sticking phases by dense exponentials, right relative to t
     const std::vector<double> time{20, 0.5, 3, 1e-3, 0.02};  // in any order
     const auto duration = quantities::stick_distribution(process, entry, time);
     for (std::size_t n = 0; n < time.size(); ++n) {
-      const auto flow = algebra::exponential(q, time[n]);
+      const auto flow = linalg::exponential(q, time[n]);
       const double shift = std::exp(-rate * time[n]);
       double density = 0;
       for (int c = 0; c < left; ++c) density += flow(middle, c) * q(c, left);
@@ -405,7 +405,7 @@ TEST_CASE("durations: named results, means only where there are none yet") {
   const double edge = process.noise.rate() * process.noise.up(2);
   CHECK(value("f_stick_0") == Approx(0.4 * edge).epsilon(1e-14));
   const std::vector<double> time{1, 2};
-  quantities::append_distribution(catalogue::kDensitySlide, catalogue::kCdfSlide, time,
+  quantities::append_distribution(cases::kDensitySlide, cases::kCdfSlide, time,
                                   {{{0.5, 0}, {0.25, 0}}, {{0.1, 0}, {0.6, 0}}, 0}, results);
   CHECK(value("f_slide") == 0.5);
   CHECK(value("cdf_slide") == 0.1);

@@ -13,7 +13,7 @@ namespace {
 
 // Levels -3 ... 3 of half a unit, of which -2 ... 2 lie within mu_s; a bias moves what sticks.
 model::Process process(double bias = 0) { return {{1, 0.5, 3}, {1.1, 0.25}, {1, 0}, bias}; }
-operators::Discretisation on_levels(double bias = 0) { return {process(bias), nullptr}; }
+generator::Discretisation on_levels(double bias = 0) { return {process(bias), nullptr}; }
 
 Excursion by_hand() {
   Excursion e;

@@ -3,13 +3,13 @@
 #include "../common/catch.hpp"
 #include "../common/near.hpp"
 #include "../common/scenes.hpp"
-#include "stickslip/exact/fluid_queue.hpp"
-#include "stickslip/operators/static_chain.hpp"
-#include "stickslip/quantities/laplace.hpp"
-#include "stickslip/quantities/stationary.hpp"
+#include "stickslip/generator/static_chain.hpp"
+#include "stickslip/quantities/durations.hpp"
+#include "stickslip/quantities/engines/excursions.hpp"
+#include "stickslip/run/fluid_queue.hpp"
 
 using namespace stickslip;
-using operators::Systems;
+using generator::Systems;
 using quantities::DurationTransforms;
 using quantities::Uncertain;
 using test::relative_difference;
@@ -27,13 +27,13 @@ class Durations {
     std::vector<Uncertain> entry;
     for (double p : distribution_.excursion().entry) entry.push_back({p, 0});
     const auto t = quantities::sliding_transforms(systems_, distribution_, lambda);
-    systems_.release({lambda, operators::Symmetry::even});
+    systems_.release({lambda, generator::Symmetry::even});
     return {t.slide, quantities::stick_transform(systems_.process(), lambda, entry), t.excursion};
   }
   [[nodiscard]] const quantities::Excursion& means() const { return distribution_.excursion(); }
 
  private:
-  petsc::SolverStatistics statistics_;
+  linalg::SolverStatistics statistics_;
   Systems systems_;
   quantities::StationaryDistribution distribution_;
 };
@@ -56,9 +56,9 @@ std::vector<test::Discrete> sample_discretisations() {
 
 // Durations without drag, with nothing of the discretisations in v.
 DurationTransforms exact_transforms(const model::Process& process, double lambda) {
-  const exact::FluidQueue queue(process), killed(process, lambda);
+  const run::FluidQueue queue(process), killed(process, lambda);
   const auto sticking =
-      operators::StaticChain(process.noise, process.highest_static(), lambda).exit_transform();
+      generator::StaticChain(process.noise, process.highest_static(), lambda).exit_transform();
   const auto dot = [&](const std::vector<double>& p) {
     return Uncertain{std::inner_product(p.begin(), p.end(), sticking.begin(), 0.0), 0};
   };
@@ -115,7 +115,7 @@ TEST_CASE("laplace: without drag hp agrees with the fluid queue") {
   };
   for (const auto& c : {Case{0.5, 1}, Case{0.25, 1}, Case{0.25, 0.25}, Case{0.125, 0.5}}) {
     const auto s = scene(1, c.mu_d, 1, c.delta, {0, 0});
-    const auto d = accuracy::discretise(s, accuracy::hp_resolution(s, 9, 0, 1e-11, {30, 0}));
+    const auto d = run::discretise(s, run::hp_resolution(s, 9, 0, 1e-11, {30, 0}));
     Durations durations(d);
     for (double lambda : {1.0, 30.0}) {
       const auto found = durations.at(lambda), known = exact_transforms(d.process, lambda);
@@ -133,7 +133,7 @@ TEST_CASE("laplace: transforms of large lambda have the accuracy of their own si
   const double lambda = 1e4;
   for (const auto& s : {scene(1, 0.25, 1, 0.25, {0, 0}), scene(1, 1, 1, 0.5, {1, 0})}) {
     const auto on_layers = [&](int degree) {
-      return accuracy::discretise(s, accuracy::hp_resolution(s, degree, 16, 1e-12, {lambda, 0}));
+      return run::discretise(s, run::hp_resolution(s, degree, 16, 1e-12, {lambda, 0}));
     };
     const auto fine = on_layers(12);
     const auto found = Durations(on_layers(10)).at(lambda), finer = Durations(fine).at(lambda);

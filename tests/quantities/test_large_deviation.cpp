@@ -6,11 +6,11 @@
 #include "../common/near.hpp"
 #include "../common/scenes.hpp"
 #include "../common/values.hpp"
-#include "stickslip/accuracy/carry_out.hpp"
-#include "stickslip/catalogue/large_deviation_keys.hpp"
+#include "stickslip/case/displacement_rows.hpp"
+#include "stickslip/run/carry_out.hpp"
 
 using namespace stickslip;
-using catalogue::Quantity;
+using cases::Quantity;
 using test::Values;
 using test::values;
 
@@ -19,7 +19,7 @@ namespace {
 cases::Case asking(const model::Scene& s, const std::vector<double>& tilts, double accuracy) {
   cases::Case c;
   c.scene = s;
-  c.question.quantities = {catalogue::kLargeDeviation.quantity};
+  c.question.quantities = {cases::kLargeDeviation.quantity};
   c.question.arguments["tilt"] = tilts;
   c.question.accuracy = accuracy;
   return c;
@@ -102,7 +102,7 @@ TEST_CASE("large deviations: what is not resolved is named, and takes nothing al
   c.question.quantities.insert(Quantity::moments);
   c.method.degree = 6;
   c.method.noise_degree = 3;
-  auto outcome = accuracy::carry_out(PETSC_COMM_WORLD, c, {});
+  auto outcome = run::carry_out(PETSC_COMM_WORLD, c, {});
   CHECK(!outcome.reached);
   for (const auto& result : outcome.results) {
     INFO(result.key);
@@ -112,7 +112,7 @@ TEST_CASE("large deviations: what is not resolved is named, and takes nothing al
     CHECK((!tilted || (std::isnan(result.value[0]) && std::isnan(result.value[2]))));
   }
   c.method.noise_degree = 0;
-  outcome = accuracy::carry_out(PETSC_COMM_WORLD, c, {});
+  outcome = run::carry_out(PETSC_COMM_WORLD, c, {});
   for (const auto& result : outcome.results) CHECK(std::isfinite(result.value[0]));
 }
 

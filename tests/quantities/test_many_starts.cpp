@@ -7,16 +7,16 @@
 #include "../common/near.hpp"
 #include "../common/scenes.hpp"
 #include "../common/solved.hpp"
-#include "stickslip/algebra/rate_elimination.hpp"
-#include "stickslip/effects/effect.hpp"
-#include "stickslip/quantities/discounted_starts.hpp"
-#include "stickslip/quantities/resolvent.hpp"
+#include "stickslip/linalg/dense.hpp"
+#include "stickslip/model/effect.hpp"
+#include "stickslip/quantities/engines/excursions.hpp"
 #include "stickslip/quantities/sensitivity.hpp"
-#include "stickslip/routes/evaluation.hpp"
+#include "stickslip/quantities/spectra.hpp"
+#include "stickslip/run/evaluation.hpp"
 
 using namespace stickslip;
-using catalogue::Quantity;
-using catalogue::Route;
+using cases::Quantity;
+using cases::Route;
 using quantities::Results;
 using quantities::Uncertain;
 using test::relative_difference;
@@ -54,22 +54,22 @@ std::vector<model::Observable> observables(const std::vector<std::string>& texts
 struct Discretised {
   explicit Discretised(const model::Scene& s, int degree = kDegree)
       : systems(PETSC_COMM_WORLD, test::on_hp(s, degree), statistics) {}
-  petsc::SolverStatistics statistics;
-  operators::Systems systems;
+  linalg::SolverStatistics statistics;
+  generator::Systems systems;
 };
 
 // (lambda - Q) u = f, or lambda u + (u - E[u]) with f - E[f], by the noise alone.
 std::vector<double> of_noise(const model::NoiseChain& noise, double lambda,
                              const std::function<double(double)>& f) {
   std::vector<double> values;
-  std::vector<algebra::RateElimination::Rate> rates;
+  std::vector<linalg::RateElimination::Rate> rates;
   for (int i = noise.lowest(); i <= noise.highest(); ++i) {
     values.push_back(f(noise.level(i)));
     noise.for_each_jump(i, [&](int to, double rate) {
       rates.push_back({i - noise.lowest(), to - noise.lowest(), rate});
     });
   }
-  return algebra::RateElimination(std::vector<double>(values.size(), lambda), rates)
+  return linalg::RateElimination(std::vector<double>(values.size(), lambda), rates)
       .integral(values);
 }
 
@@ -114,13 +114,13 @@ TEST_CASE("many starts: the resolvent is that of the whole process", "[real]") {
     for (double lambda : {1e-3, 0.5, 30.0}) {
       const auto r = quantities::resolvent(made.systems, lambda, f);
       auto& whole =
-          made.systems.at(lambda, operators::Symmetry::none, operators::StaticPhase::kept);
+          made.systems.at(lambda, generator::Symmetry::none, generator::StaticPhase::kept);
       for (std::size_t n = 0; n < f.size(); ++n) {
         const auto u = whole.factors().solve(whole.a().values(f[n].value));
         INFO(f[n].name << " at " << lambda << " with bias " << s.bias);
         const double plus = quantities::value_of(whole.a().trace_at_exit(), u).value,
                      minus = quantities::value_of(
-                                 whole.a().trace_at_exit(operators::Branch::negative), u)
+                                 whole.a().trace_at_exit(generator::Branch::negative), u)
                                  .value;
         CHECK(std::abs(r.of[n].u.value - plus) < 1e-9 * (std::abs(plus) + 1));
         CHECK(std::abs(r.of[n].u_from_minus.value - minus) < 1e-9 * (std::abs(minus) + 1));
@@ -239,11 +239,11 @@ std::map<std::string, quantities::Result> by_route(const model::Scene& s, Route 
   c.question.accuracy = 1e-8;
   c.question.lambda = lambda;
   if (route == Route::fluid_queue) c.method.scheme = cases::Scheme::none;
-  petsc::SolverStatistics statistics;
+  linalg::SolverStatistics statistics;
   const auto d = route == Route::fluid_queue ? test::Discrete{s.meant(), nullptr}
                                              : test::on_hp(s, kDegree, 1e-13);
   std::map<std::string, quantities::Result> all;
-  for (auto& r : routes::evaluate({PETSC_COMM_WORLD, c, d, statistics}).results) {
+  for (auto& r : run::evaluate({PETSC_COMM_WORLD, c, d, statistics}).results) {
     all[r.key] = std::move(r);
   }
   return all;

@@ -5,11 +5,11 @@
 #include "../common/near.hpp"
 #include "../common/scenes.hpp"
 #include "../common/values.hpp"
-#include "stickslip/accuracy/refinement.hpp"
+#include "stickslip/run/refine.hpp"
 
 using namespace stickslip;
-using catalogue::Quantity;
-using catalogue::Route;
+using cases::Quantity;
+using cases::Route;
 using test::relative_difference;
 using test::scene;
 using test::Values;
@@ -134,12 +134,12 @@ TEST_CASE("noise levels in groups: unsymmetric ones as well as symmetric ones", 
   const auto s = scene(1, 0.5, 1, 1.0 / 16, {1, 0});
   const auto solve = [](const model::Scene& of) {
     const auto d = test::on_nodes(of, 10, 6);
-    petsc::SolverStatistics statistics;
+    linalg::SolverStatistics statistics;
     cases::Case c;
     c.scene = of;
     c.question.quantities = {Quantity::sticking, Quantity::moments};
     Values by_key;
-    for (const auto& r : routes::evaluate({PETSC_COMM_WORLD, c, d, statistics}).results) {
+    for (const auto& r : run::evaluate({PETSC_COMM_WORLD, c, d, statistics}).results) {
       by_key[r.key] = r;
     }
     CHECK(d.noise->count() < d.process.noise.count() / 2);

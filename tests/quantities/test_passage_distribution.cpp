@@ -7,18 +7,17 @@
 #include "../common/passages.hpp"
 #include "../common/solved.hpp"
 #include "../common/values.hpp"
-#include "stickslip/algebra/dense.hpp"
-#include "stickslip/catalogue/passage_distribution_keys.hpp"
-#include "stickslip/petsc/vectors.hpp"
-#include "stickslip/quantities/passage_distribution.hpp"
-#include "stickslip/quantities/passage_time.hpp"
-#include "stickslip/velocity/upwind_discretisation.hpp"
+#include "stickslip/case/passage_rows.hpp"
+#include "stickslip/generator/velocity_methods.hpp"
+#include "stickslip/linalg/dense.hpp"
+#include "stickslip/linalg/vectors.hpp"
+#include "stickslip/quantities/passages.hpp"
 
 using namespace stickslip;
+using generator::Symmetry;
 using model::Passage;
 using model::Start;
-using operators::Symmetry;
-using Matrix = algebra::Matrix<double>;
+using Matrix = linalg::Matrix<double>;
 using test::passage_key;
 using test::passing;
 using test::Solved;
@@ -77,7 +76,7 @@ class DensePassage {
     std::vector<double> density, distribution;
   };
   [[nodiscard]] OfStates at(double time) const {
-    const auto e = algebra::exponential(m_, time);
+    const auto e = linalg::exponential(m_, time);
     const int n = grid_.size();
     OfStates law;
     for (int r = 0; r < n; ++r) {
@@ -168,8 +167,8 @@ TEST_CASE("passage distribution: upwind equals dense exponentials on the whole g
   {
     const model::Process process{{1, 0.5, levels}, {1, 0.5}, {1, 0}};
     const test::FullGrid grid(process, spacing, nodes);
-    Solved s({process,
-              std::make_shared<velocity::UpwindDiscretisation>(spacing, nodes, model::Drag{1, 0})});
+    Solved s({process, std::make_shared<generator::UpwindDiscretisation>(spacing, nodes,
+                                                                         model::Drag{1, 0})});
     const auto p = model::stationary_distribution(process.noise);
     const auto pi = grid.stationary();
     for (const Passage passage : kPassages) {
@@ -213,7 +212,7 @@ TEST_CASE("passage distribution: telegraph noise, with a step", "[real]") {
       density{0, 0, 0, 2.171901209, 0.393338286, 0.290789461, 0.078663599, 0.000813542755};
   cases::Case c;
   c.scene = telegraph(0.3, 1);
-  c.question = {.quantities = {catalogue::kPassageTimeDistribution.quantity},
+  c.question = {.quantities = {cases::kPassageTimeDistribution.quantity},
                 .time = time,
                 .velocity = {0.3},
                 .start = kRest,
@@ -233,13 +232,13 @@ TEST_CASE("passage distribution: telegraph noise, with a step", "[real]") {
 TEST_CASE("passage distribution: a stationary start may be beyond the speed") {
   Solved solved(test::on_hp(passing(0.3), 10));
   const auto& velocities = *solved.systems.discretisation().velocities;
-  const petsc::ReadView nu(solved.distribution.occupation());
+  const linalg::ReadView nu(solved.distribution.occupation());
   std::vector<double> mass(static_cast<std::size_t>(velocities.size()));
   double all = 0;
   PetscInt at = 0;
-  solved.distribution.states().for_each_local([&](const operators::State& state) {
+  solved.distribution.states().for_each_local([&](const generator::State& state) {
     const double here = PetscRealPart(nu[at++]);
-    if (state.branch == operators::Branch::positive) mass[state.node] += here, all += here;
+    if (state.branch == generator::Branch::positive) mass[state.node] += here, all += here;
   });
   const double beyond =
       (all - velocities.mass_below(mass, 0.4)) / solved.distribution.excursion().mean_excursion();
@@ -279,8 +278,8 @@ TEST_CASE("passage distribution: simulated, within 4.5 sigma", "[real][long]") {
         if (passage == Passage::down && s.bias == 0.3) continue;  // nobody gets there
         cases::Case c;
         c.scene = s;
-        c.question = {.quantities = {catalogue::kPassageTimeDistribution.quantity,
-                                     catalogue::kPassageTimeTransform.quantity},
+        c.question = {.quantities = {cases::kPassageTimeDistribution.quantity,
+                                     cases::kPassageTimeTransform.quantity},
                       .lambda = {0.2, 3},
                       .time = {0, 0.25, 1, 4},
                       .velocity = {0.4, 0.2},
@@ -290,7 +289,7 @@ TEST_CASE("passage distribution: simulated, within 4.5 sigma", "[real][long]") {
         c.method.degree = 9;
         const auto found = test::values(c);
         c.method.degree.reset();
-        c.method.route = catalogue::Route::monte_carlo;
+        c.method.route = cases::Route::monte_carlo;
         c.method.excursions = 20000;
         for (const auto& [key, sampled] : test::values(c)) {
           if (key.starts_with("f_")) continue;  // averages over wide cells

@@ -5,17 +5,16 @@
 #include "../common/passages.hpp"
 #include "../common/solved.hpp"
 #include "../common/tallies.hpp"
-#include "stickslip/catalogue/first_passage_keys.hpp"
-#include "stickslip/petsc/vectors.hpp"
-#include "stickslip/quantities/first_passage.hpp"
-#include "stickslip/quantities/passage_time.hpp"
-#include "stickslip/simulation/sampler.hpp"
+#include "stickslip/case/passage_rows.hpp"
+#include "stickslip/linalg/vectors.hpp"
+#include "stickslip/quantities/passages.hpp"
+#include "stickslip/simulation/tally.hpp"
 
 using namespace stickslip;
+using generator::StaticPhase;
+using generator::Symmetry;
 using model::Passage;
 using model::Start;
-using operators::StaticPhase;
-using operators::Symmetry;
 using test::passage_key;
 using test::passing;
 using test::Solved;
@@ -57,7 +56,7 @@ TEST_CASE("passage time: both moments solve their backward equations", "[paralle
         const auto time = whole.factors().solve(a.values([](double, double, double) { return 2; }));
         const auto square = whole.factors().solve(time.x);
         const auto compare = [&](const Start& start, Vec from, double tolerance) {
-          const double mean = petsc::dot(from, time.x) / 2, second = petsc::dot(from, square.x);
+          const double mean = linalg::dot(from, time.x) / 2, second = linalg::dot(from, square.x);
           const auto found = time_of(solved, passage, 0.3, start);
           CHECK(found.mean.value == Approx(mean).epsilon(1e-9));
           CHECK(found.variance.value == Approx(second - mean * mean).epsilon(tolerance));
@@ -81,13 +80,13 @@ TEST_CASE("passage time: a stationary start is the mean over all states") {
     Solved solved(test::on_hp(s, 9));
     for (const Passage passage : kPassages) {
       const double w = 0.4;
-      operators::Systems split(PETSC_COMM_WORLD,
+      generator::Systems split(PETSC_COMM_WORLD,
                                solved.systems.discretisation().passing(w, std::nullopt),
                                solved.statistics);
       const quantities::StationaryDistribution law(split);
       auto key = passage_key(solved.systems.process(), Passage::both, w);
       key.passage = passage;
-      key.symmetry = operators::symmetry_of(solved.systems.process());
+      key.symmetry = generator::symmetry_of(solved.systems.process());
       if (passage != Passage::both && key.symmetry == Symmetry::even) continue;
       key.static_phase = StaticPhase::kept;
       auto& whole = solved.systems.at(key);
@@ -97,10 +96,10 @@ TEST_CASE("passage time: a stationary start is the mean over all states") {
           whole.factors().solve(whole.a().values([](double, double, double) { return 1; }));
       const auto square = whole.factors().solve(time.x);
       const auto law_inside = law.occupation_on(whole.a());
-      petsc::check(VecPointwiseMult(law_inside, law_inside, inside));
+      linalg::check(VecPointwiseMult(law_inside, law_inside, inside));
       const double total = law.excursion().mean_excursion(),
-                   mean = petsc::dot(law_inside, time.x) / total,
-                   second = 2 * petsc::dot(law_inside, square.x) / total;
+                   mean = linalg::dot(law_inside, time.x) / total,
+                   second = 2 * linalg::dot(law_inside, square.x) / total;
       const auto found = time_of(solved, passage, w, kStationary);
       CHECK(found.mean.value == Approx(mean).epsilon(1e-9));
       CHECK(found.variance.value == Approx(second - mean * mean).epsilon(1e-7));
@@ -170,7 +169,7 @@ TEST_CASE("passage time: as simulated from every start", "[real][long]") {
     const auto& process = solved.systems.process();
     for (const Passage passage : kPassages) {
       for (const auto& start : {kRest, kStationary, Start{process.lowest_static() - 1, -0.1}}) {
-        const cases::Question question{.quantities = {catalogue::kFirstPassageTime.quantity},
+        const cases::Question question{.quantities = {cases::kFirstPassageTime.quantity},
                                        .velocity = {0.4, 0.2},
                                        .start = start,
                                        .passage = passage};

@@ -2,15 +2,14 @@
 
 #include "../common/catch.hpp"
 #include "../common/scenes.hpp"
-#include "stickslip/accuracy/carry_out.hpp"
-#include "stickslip/accuracy/prediction.hpp"
-#include "stickslip/catalogue/phase_durations_keys.hpp"
+#include "stickslip/case/duration_rows.hpp"
 #include "stickslip/quantities/plan.hpp"
+#include "stickslip/run/carry_out.hpp"
 
 using namespace stickslip;
 using cases::Case;
-using catalogue::Quantity;
-using operators::Symmetry;
+using cases::Quantity;
+using generator::Symmetry;
 using test::scene;
 
 namespace {
@@ -115,11 +114,11 @@ TEST_CASE("plan: what is predicted is what is done") {
   for (const auto& c : samples()) {
     INFO(c.name);
     const Case r = given(c);
-    const auto plan = accuracy::needs_system(r) ? quantities::plan_of(r) : quantities::Plan{};
+    const auto plan = run::needs_system(r) ? quantities::plan_of(r) : quantities::Plan{};
     CHECK_FALSE(plan.adaptive());
     const Counts predicted{plan.assemblies(), plan.factorizations(), plan.solves()};
     CHECK(predicted == c.expected);
-    const auto outcome = accuracy::carry_out(PETSC_COMM_WORLD, r, {}, {});
+    const auto outcome = run::carry_out(PETSC_COMM_WORLD, r, {}, {});
     if (c.expected.factorizations == 0) {
       CHECK(outcome.steps.empty());
       continue;
@@ -162,7 +161,7 @@ TEST_CASE("plan: adaptive tasks are marked, and take complex arithmetic for comp
     const auto plan = quantities::plan_of(r);
     CHECK(plan.adaptive());
     CHECK(plan.factorizations() == (q == relaxation ? 0 : 1));
-    const auto outcome = accuracy::carry_out(PETSC_COMM_WORLD, r, {}, {});
+    const auto outcome = run::carry_out(PETSC_COMM_WORLD, r, {}, {});
     const auto& l = outcome.steps.front().statistics;
     CHECK(l.factorizations_real + l.factorizations_complex >= plan.factorizations() + 1);
     CHECK(l.solves >= plan.solves());
@@ -175,9 +174,9 @@ TEST_CASE("plan: phase_durations takes half of the work of duration_density for 
   r.question.time = {0.5, 2};
   const auto with = [&](std::set<Quantity> quantities) {
     r.question.quantities = std::move(quantities);
-    return accuracy::carry_out(PETSC_COMM_WORLD, r, {}, {});
+    return run::carry_out(PETSC_COMM_WORLD, r, {}, {});
   };
-  const Quantity part = catalogue::kPhaseDurations.quantity;
+  const Quantity part = cases::kPhaseDurations.quantity;
   const auto all = with({Quantity::duration_density}), phases = with({part}),
              both = with({Quantity::duration_density, part});
   CHECK(both.results.size() == all.results.size());
@@ -195,8 +194,8 @@ TEST_CASE("plan: sizes are those of the run, by the analysis alone") {
   for (double delta : {0.5, 0.25}) {
     Case r = given({"", {Quantity::sticking, Quantity::entry_law}, {}});
     r.scene.delta = delta;
-    const auto prediction = accuracy::predict(PETSC_COMM_WORLD, r);
-    const auto outcome = accuracy::carry_out(PETSC_COMM_WORLD, r, {}, {});
+    const auto prediction = run::predict(PETSC_COMM_WORLD, r);
+    const auto outcome = run::carry_out(PETSC_COMM_WORLD, r, {}, {});
     REQUIRE(prediction.steps.size() == 3);
     double seconds = 0;
     for (std::size_t n = 0; n < 3; ++n) {
@@ -220,9 +219,9 @@ TEST_CASE("plan: sizes are those of the run, by the analysis alone") {
 TEST_CASE("plan: operations of all systems are predicted, sizes of the largest") {
   using enum Quantity;
   const auto even =
-      accuracy::predict(PETSC_COMM_WORLD, given({"", {density, stick_duration_transform}, {}}));
+      run::predict(PETSC_COMM_WORLD, given({"", {density, stick_duration_transform}, {}}));
   auto both = given({"", {density, stick_duration_transform, entry_law}, {}});
-  const auto two = accuracy::predict(PETSC_COMM_WORLD, both);
+  const auto two = run::predict(PETSC_COMM_WORLD, both);
   // Densities at 0+ ask for a degree more.
   const auto &one_step = even.steps.back(), &step = two.steps.back();
   const double growth = static_cast<double>(step.unknowns) / static_cast<double>(one_step.unknowns);

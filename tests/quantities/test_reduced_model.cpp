@@ -5,13 +5,13 @@
 
 #include "../common/catch.hpp"
 #include "../common/solved.hpp"
-#include "stickslip/exact/transfer_function.hpp"
-#include "stickslip/petsc/vectors.hpp"
-#include "stickslip/quantities/model_search.hpp"
+#include "stickslip/linalg/vectors.hpp"
+#include "stickslip/quantities/engines/inversion.hpp"
+#include "stickslip/quantities/engines/propagator.hpp"
 
 using namespace stickslip;
-using operators::StaticPhase;
-using operators::Symmetry;
+using generator::StaticPhase;
+using generator::Symmetry;
 using quantities::Answers;
 using quantities::Questions;
 using quantities::Recipe;
@@ -45,7 +45,7 @@ class Velocity {
     questions.points = points;
     for (std::size_t n = 0; n < points.size(); ++n) questions.terms.push_back({{n, 1}});
     questions.values = [points](const Reduced& r) {
-      const exact::TransferFunction transfer(r.m, r.gamma, r.beta);
+      const quantities::TransferFunction transfer(r.m, r.gamma, r.beta);
       std::vector<Uncertain> values;
       for (const Complex z : points) values.push_back({std::abs(transfer(z)), 0});
       return values;
@@ -60,7 +60,7 @@ class Velocity {
  private:
   test::Solved solved_;
   quantities::ProcessPencil pencil_;
-  petsc::VecHandle b_, c_, weight_;
+  linalg::VecHandle b_, c_, weight_;
   int most_pairs_;
 };
 
@@ -73,9 +73,9 @@ TEST_CASE("reduced model: the error is the product of both residuals with the re
   auto model = velocity.model();
   model->extend(5, 2);
   const Reduced reduced = model->reduce();
-  const exact::TransferFunction transfer(reduced.m, reduced.gamma, reduced.beta);
+  const quantities::TransferFunction transfer(reduced.m, reduced.gamma, reduced.beta);
   const auto residual = [&](Complex z) {
-    const auto expand = [](const algebra::Matrix<double>& a, const std::vector<Complex>& x,
+    const auto expand = [](const linalg::Matrix<double>& a, const std::vector<Complex>& x,
                            bool transposed) {
       std::vector<Complex> y(static_cast<std::size_t>(transposed ? a.columns() : a.rows()), 0.0);
       for (int r = 0; r < a.rows(); ++r) {
@@ -105,11 +105,11 @@ TEST_CASE("reduced model: no error where it was made from a true solution") {
   for (const Complex z : {Complex(0, 0.3), Complex(0.4, 0)}) {
     const auto truth = model->truth(z, false);
     const auto before = model->reduce();
-    const double error =
-        std::abs(truth.value - exact::TransferFunction(before.m, before.gamma, before.beta)(z));
+    const double error = std::abs(
+        truth.value - quantities::TransferFunction(before.m, before.gamma, before.beta)(z));
     CHECK(model->interpolate(truth) == (z.imag() == 0 ? 1 : 2));
     const auto after = model->reduce();
-    const exact::TransferFunction transfer(after.m, after.gamma, after.beta);
+    const quantities::TransferFunction transfer(after.m, after.gamma, after.beta);
     CHECK(error > 1e-9 * std::abs(truth.value));
     CHECK(std::abs(truth.value - transfer(z)) < 1e-12 * std::abs(truth.value));
   }
@@ -136,7 +136,7 @@ TEST_CASE("reduced model: errors hold at points that the search never saw") {
     INFO("tolerance " << tolerance << ", pairs " << found.pairs);
     CHECK(found.relative_error <= tolerance);
     CHECK(found.truths >= 2);  // at both ends
-    const exact::TransferFunction transfer(found.model.m, found.model.gamma, found.model.beta);
+    const quantities::TransferFunction transfer(found.model.m, found.model.gamma, found.model.beta);
     for (const Complex z :
          {Complex(0, 0.03), Complex(0, 0.25), Complex(0, 1), Complex(0, 4), Complex(0, 12)}) {
       const Complex truth = model->truth(z, false).value;

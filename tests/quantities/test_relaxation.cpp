@@ -5,15 +5,15 @@
 
 #include "../common/catch.hpp"
 #include "../common/scenes.hpp"
-#include "stickslip/operators/systems.hpp"
-#include "stickslip/petsc/check.hpp"
+#include "stickslip/generator/resolvents.hpp"
+#include "stickslip/linalg/petsc.hpp"
 #include "stickslip/quantities/density.hpp"
+#include "stickslip/quantities/engines/excursions.hpp"
 #include "stickslip/quantities/relaxation.hpp"
-#include "stickslip/quantities/stationary.hpp"
 
 using namespace stickslip;
-using operators::Symmetry;
-using operators::Systems;
+using generator::Symmetry;
+using generator::Systems;
 using quantities::PhaseField;
 using quantities::RelaxationMode;
 using test::scene;
@@ -26,7 +26,7 @@ struct Case {
 };
 
 std::vector<RelaxationMode> solve(const Case& c) {
-  petsc::SolverStatistics statistics;
+  linalg::SolverStatistics statistics;
   Systems systems(PETSC_COMM_WORLD, c.discrete, statistics);
   return quantities::relaxation_modes(systems, c.symmetry).modes;
 }
@@ -112,7 +112,7 @@ double largest_modulus(const RelaxationMode& mode) {
 
 // pi(phi) by the density of the stationary distribution; no state may be missing there.
 std::complex<double> average(const quantities::DensityField& density,
-                             const velocity::VelocityDiscretisation& velocities,
+                             const generator::VelocityDiscretisation& velocities,
                              const RelaxationMode& mode) {
   const std::size_t half = velocities.nodes().size();
   const int n = static_cast<int>(density.atom.size() / 2);
@@ -176,7 +176,7 @@ TEST_CASE("relaxation: modes have no stationary average", "[parallel]") {
   for (const auto& c : sample_cases()) {
     const auto& velocities = c.discrete.velocities;
     if (velocities->keeps_origin() || c.symmetry == Symmetry::odd) continue;
-    petsc::SolverStatistics statistics;
+    linalg::SolverStatistics statistics;
     Systems systems(PETSC_COMM_WORLD, c.discrete, statistics);
     const auto density = quantities::density_field(quantities::StationaryDistribution(systems));
     REQUIRE(std::abs(density.truncated_mass) < 1e-12);
@@ -186,9 +186,9 @@ TEST_CASE("relaxation: modes have no stationary average", "[parallel]") {
 
 TEST_CASE("relaxation: half as many modes as the eigensolver is asked for") {
   const auto s = test::on_full_noise(scene(1, 0.25, 1, 0.5, {1, 0}));
-  petsc::check(PetscOptionsSetValue(nullptr, "-relax_eps_nev", "5"));
+  linalg::check(PetscOptionsSetValue(nullptr, "-relax_eps_nev", "5"));
   const auto modes = solve({test::on_hp(s, 4), Symmetry::even});
-  petsc::check(PetscOptionsClearValue(nullptr, "-relax_eps_nev"));
+  linalg::check(PetscOptionsClearValue(nullptr, "-relax_eps_nev"));
   CHECK(modes.size() == 2);
 
   quantities::Results results;

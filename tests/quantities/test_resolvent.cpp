@@ -4,17 +4,17 @@
 #include "../common/catch.hpp"
 #include "../common/near.hpp"
 #include "../common/scenes.hpp"
-#include "stickslip/petsc/check.hpp"
-#include "stickslip/quantities/laplace.hpp"
-#include "stickslip/quantities/resolvent.hpp"
-#include "stickslip/quantities/stationary.hpp"
+#include "stickslip/linalg/petsc.hpp"
+#include "stickslip/quantities/durations.hpp"
+#include "stickslip/quantities/engines/excursions.hpp"
+#include "stickslip/quantities/spectra.hpp"
 
 using namespace stickslip;
-using operators::Branch;
-using operators::StaticPhase;
-using operators::Symmetry;
-using operators::Systems;
-using petsc::check;
+using generator::Branch;
+using generator::StaticPhase;
+using generator::Symmetry;
+using generator::Systems;
+using linalg::check;
 using test::relative_difference;
 using test::scene;
 
@@ -44,7 +44,7 @@ class Direct {
     double even_by_lambda, odd;
   };
   [[nodiscard]] Parts of(const model::Observable& f) {
-    const petsc::VecHandle rest = system_.a().values(f.value);
+    const linalg::VecHandle rest = system_.a().values(f.value);
     double c = 0, odd = 0;
     for (int n = 0; n < 3; ++n) {
       const auto u = system_.factors().solve(rest);
@@ -60,8 +60,8 @@ class Direct {
 
  private:
   double lambda_;
-  operators::System& system_;
-  petsc::VecHandle upper_, lower_;
+  generator::System& system_;
+  linalg::VecHandle upper_, lower_;
 };
 
 // Relative closeness; what is zero by symmetry is so up to rounding in the direct solution.
@@ -80,7 +80,7 @@ const std::vector<model::Scene>& sample_scenes() {
 /// Systems of one discretisation, with what must outlive them.
 struct Discretised {
   explicit Discretised(const test::Discrete& d) : systems(PETSC_COMM_WORLD, d, statistics) {}
-  petsc::SolverStatistics statistics;
+  linalg::SolverStatistics statistics;
   Systems systems;
 };
 

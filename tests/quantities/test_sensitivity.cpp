@@ -4,7 +4,7 @@
 #include "../common/catch.hpp"
 #include "../common/near.hpp"
 #include "../common/solved.hpp"
-#include "stickslip/effects/effect.hpp"
+#include "stickslip/model/effect.hpp"
 #include "stickslip/model/noise_chain.hpp"
 #include "stickslip/quantities/sensitivity.hpp"
 

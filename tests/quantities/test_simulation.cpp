@@ -7,7 +7,7 @@
 #include "../common/simulation.hpp"
 #include "../common/solved.hpp"
 #include "stickslip/quantities/durations.hpp"
-#include "stickslip/quantities/spectrum.hpp"
+#include "stickslip/quantities/spectra.hpp"
 
 using namespace stickslip;
 using quantities::DurationDistribution;

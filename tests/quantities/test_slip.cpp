@@ -4,17 +4,17 @@
 #include "../common/catch.hpp"
 #include "../common/near.hpp"
 #include "../common/solved.hpp"
-#include "stickslip/petsc/vectors.hpp"
+#include "stickslip/linalg/vectors.hpp"
 #include "stickslip/quantities/displacement.hpp"
-#include "stickslip/quantities/first_passage.hpp"
+#include "stickslip/quantities/passages.hpp"
 #include "stickslip/quantities/slip.hpp"
-#include "stickslip/quantities/spectrum.hpp"
+#include "stickslip/quantities/spectra.hpp"
 
 using namespace stickslip;
-using operators::Branch;
-using operators::Clock;
-using operators::StaticPhase;
-using operators::Symmetry;
+using generator::Branch;
+using generator::Clock;
+using generator::StaticPhase;
+using generator::Symmetry;
 using quantities::FirstPassage;
 using test::Solved;
 
@@ -118,15 +118,15 @@ TEST_CASE("first passage: the mean time solves its backward equation", "[paralle
       for (double w : {0.02, 0.3, 1.0}) {
         const FirstPassage found =
             quantities::first_passage(solved.systems, solved.distribution.starts(), w);
-        operators::SystemKey key{0, operators::symmetry_of(process), StaticPhase::kept};
+        generator::SystemKey key{0, generator::symmetry_of(process), StaticPhase::kept};
         key.speed_limit = w;
         auto& whole = solved.systems.at(key);
         const auto ones = whole.a().values([](double, double, double) { return 1.0; });
         const auto time = whole.factors().solve(ones);
         const auto rest = whole.a().mean_at_zero(model::stationary_distribution(process.noise));
-        CHECK(petsc::dot(solved.distribution.starts_on(whole.a()), time.x) ==
+        CHECK(linalg::dot(solved.distribution.starts_on(whole.a()), time.x) ==
               Approx(found.from_slide.value).epsilon(1e-9));
-        CHECK(petsc::dot(rest, time.x) == Approx(found.from_rest.value).epsilon(1e-9));
+        CHECK(linalg::dot(rest, time.x) == Approx(found.from_rest.value).epsilon(1e-9));
         solved.systems.keep({});
       }
     }

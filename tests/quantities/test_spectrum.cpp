@@ -7,9 +7,9 @@
 #include "../common/full_grid.hpp"
 #include "../common/near.hpp"
 #include "../common/solved.hpp"
-#include "stickslip/petsc/session.hpp"
-#include "stickslip/quantities/spectrum.hpp"
-#include "stickslip/velocity/upwind_discretisation.hpp"
+#include "stickslip/generator/velocity_methods.hpp"
+#include "stickslip/linalg/session.hpp"
+#include "stickslip/quantities/spectra.hpp"
 
 using namespace stickslip;
 using quantities::ReducedSpectrum;
@@ -98,12 +98,12 @@ class DenseSpectrum {
   [[nodiscard]] double operator()(double omega) const {
     using Complex = std::complex<double>;
     const int n = grid_.size();
-    auto a = algebra::Matrix<Complex>::identity(n, {0, omega});
+    auto a = linalg::Matrix<Complex>::identity(n, {0, omega});
     for (int c = 0; c < n; ++c) {
       for (int r = 0; r < n; ++r) a(r, c) -= grid_.generator()(r, c);
     }
     std::vector<Complex> x(v_.begin(), v_.end());
-    algebra::LuFactors(std::move(a)).solve(x, false);
+    linalg::LuFactors(std::move(a)).solve(x, false);
     return 2 * std::inner_product(c_.begin(), c_.end(), x.begin(), Complex(0)).real();
   }
 
@@ -192,7 +192,8 @@ TEST_CASE("spectrum: upwind equals dense solves on the whole grid") {
     const model::Process process{{c.tau, 0.5, c.levels}, {c.mu_s, c.mu_d}, c.drag};
     const double spacing = 0.25;
     const DenseSpectrum dense(process, spacing, c.nodes);
-    Solved s({process, std::make_shared<velocity::UpwindDiscretisation>(spacing, c.nodes, c.drag)});
+    Solved s(
+        {process, std::make_shared<generator::UpwindDiscretisation>(spacing, c.nodes, c.drag)});
     const std::vector<double> omega{0.05, 0.9 / c.tau, 1.1 / c.tau, 8};
     const auto r = reduced(s, omega, 1e-11);
     for (std::size_t n = 0; n < omega.size(); ++n) {

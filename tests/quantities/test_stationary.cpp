@@ -4,13 +4,13 @@
 #include "../common/catch.hpp"
 #include "../common/full_grid.hpp"
 #include "../common/near.hpp"
-#include "stickslip/accuracy/resolution.hpp"
+#include "stickslip/generator/velocity_methods.hpp"
 #include "stickslip/quantities/density.hpp"
-#include "stickslip/quantities/stationary.hpp"
-#include "stickslip/velocity/upwind_discretisation.hpp"
+#include "stickslip/quantities/engines/excursions.hpp"
+#include "stickslip/run/discretise.hpp"
 
 using namespace stickslip;
-using operators::Systems;
+using generator::Systems;
 using quantities::StationaryDistribution;
 using test::relative_difference;
 
@@ -39,9 +39,9 @@ double moment(const StationaryDistribution& distribution, const char* key) {
   throw std::invalid_argument(key);
 }
 
-StationaryDistribution solve(const model::Scene& s, const accuracy::Resolution& resolution) {
-  petsc::SolverStatistics statistics;
-  Systems systems(PETSC_COMM_WORLD, accuracy::discretise(s, resolution), statistics);
+StationaryDistribution solve(const model::Scene& s, const run::Resolution& resolution) {
+  linalg::SolverStatistics statistics;
+  Systems systems(PETSC_COMM_WORLD, run::discretise(s, resolution), statistics);
   StationaryDistribution distribution(systems);
   distribution.orient(systems);
   return distribution;
@@ -55,13 +55,13 @@ const std::vector<model::Scene>& sample_scenes() {
   return scenes;
 }
 
-std::vector<accuracy::Resolution> sample_resolutions(const model::Scene& s) {
-  return {accuracy::hp_resolution(s, 2, 0, 1e-6),
-          accuracy::hp_resolution(s, 7, 0, 1e-10),
-          accuracy::hp_resolution(s, 7, 0, 1e-10, {}, {2, 6}),
-          accuracy::hp_resolution(s, 7, 0, 1e-10, {}, {5}),
-          accuracy::upwind_resolution(s, 1, 1e-6),
-          accuracy::upwind_resolution(s, 8, 1e-8)};
+std::vector<run::Resolution> sample_resolutions(const model::Scene& s) {
+  return {run::hp_resolution(s, 2, 0, 1e-6),
+          run::hp_resolution(s, 7, 0, 1e-10),
+          run::hp_resolution(s, 7, 0, 1e-10, {}, {2, 6}),
+          run::hp_resolution(s, 7, 0, 1e-10, {}, {5}),
+          run::upwind_resolution(s, 1, 1e-6),
+          run::upwind_resolution(s, 8, 1e-8)};
 }
 
 }  // namespace
@@ -89,9 +89,9 @@ TEST_CASE(
       square += pi[state] * v * v;
     });
 
-    petsc::SolverStatistics statistics;
+    linalg::SolverStatistics statistics;
     const auto velocities =
-        std::make_shared<velocity::UpwindDiscretisation>(spacing, nodes, process.drag);
+        std::make_shared<generator::UpwindDiscretisation>(spacing, nodes, process.drag);
     Systems systems(PETSC_COMM_WORLD, {process, velocities}, statistics);
     StationaryDistribution distribution(systems);
     distribution.orient(systems);
@@ -131,7 +131,7 @@ TEST_CASE("stationary distribution: power put in by the noise equals power dissi
           "[parallel]") {
   for (const auto& s : sample_scenes()) {
     if (s.drag.cubic > 0) continue;  // would need E[V^4]
-    const auto distribution = solve(s, accuracy::hp_resolution(s, 13, 0, 1e-15));
+    const auto distribution = solve(s, run::hp_resolution(s, 13, 0, 1e-15));
     const double dissipated = s.friction.mu_d * moment(distribution, "E_absV") +
                               s.drag.linear * moment(distribution, "E_V2");
     CHECK(relative_difference(moment(distribution, "E_XV"), dissipated) < 1e-11);
@@ -144,9 +144,9 @@ TEST_CASE("stationary distribution: P(|X| <= mu_s) summed over the grid at every
   s.noise_levels = s.full_levels();
   const int k = s.meant().highest_static();
   const double closed = model::noise_moments(s.meant().noise, -k, k).within;
-  std::vector<accuracy::Resolution> resolutions{accuracy::hp_resolution(s, 1, 0, 1e-8),
-                                                accuracy::hp_resolution(s, 8, 0, 1e-8)};
-  for (int p : {1, 2, 7, 64}) resolutions.push_back(accuracy::upwind_resolution(s, p, 1e-8));
+  std::vector<run::Resolution> resolutions{run::hp_resolution(s, 1, 0, 1e-8),
+                                           run::hp_resolution(s, 8, 0, 1e-8)};
+  for (int p : {1, 2, 7, 64}) resolutions.push_back(run::upwind_resolution(s, p, 1e-8));
   for (const auto& resolution : resolutions) {
     const auto distribution = solve(s, resolution);
     const auto marginal =
@@ -196,9 +196,9 @@ TEST_CASE("density: integrates to the distribution it came from", "[parallel][lo
 
 TEST_CASE("density: distribution functions of two discretisations approach each other") {
   const auto s = scene(1, 0.25, 1, 0.25, {1, 0});
-  const auto coarse = solve(s, accuracy::hp_resolution(s, 3, 0, 1e-6));
-  const auto middle = solve(s, accuracy::hp_resolution(s, 6, 0, 1e-9));
-  const auto fine = solve(s, accuracy::hp_resolution(s, 9, 0, 1e-12));
+  const auto coarse = solve(s, run::hp_resolution(s, 3, 0, 1e-6));
+  const auto middle = solve(s, run::hp_resolution(s, 6, 0, 1e-9));
+  const auto fine = solve(s, run::hp_resolution(s, 9, 0, 1e-12));
   const auto finest = quantities::speed_distribution(fine);
   const double first = quantities::distance(quantities::speed_distribution(coarse), finest);
   const double second = quantities::distance(quantities::speed_distribution(middle), finest);

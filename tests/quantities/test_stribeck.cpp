@@ -4,8 +4,8 @@
 #include "../common/catch.hpp"
 #include "../common/near.hpp"
 #include "../common/solved.hpp"
-#include "stickslip/model/drag_law.hpp"
-#include "stickslip/quantities/state_averages.hpp"
+#include "stickslip/model/drag.hpp"
+#include "stickslip/quantities/engines/excursions.hpp"
 
 using namespace stickslip;
 using test::relative_difference;
@@ -90,7 +90,7 @@ TEST_CASE("stribeck: power that noise puts in is dissipated, with any exponent a
     quantities::Results results;
     const auto& distribution = solved.distribution;
     quantities::append_moments(distribution.discretisation(), distribution.excursion(), results);
-    quantities::append_averages(distribution, solved.systems.at(0, operators::Symmetry::none).a(),
+    quantities::append_averages(distribution, solved.systems.at(0, generator::Symmetry::none).a(),
                                 {}, results);
     Values found;
     for (const auto& r : results) found[r.key] = r.value[0];

@@ -5,10 +5,10 @@
 #include "../common/near.hpp"
 #include "../common/quadrature.hpp"
 #include "../common/solved.hpp"
-#include "stickslip/algebra/dense.hpp"
-#include "stickslip/quantities/spectrum.hpp"
-#include "stickslip/quantities/transient.hpp"
-#include "stickslip/velocity/upwind_discretisation.hpp"
+#include "stickslip/generator/velocity_methods.hpp"
+#include "stickslip/linalg/dense.hpp"
+#include "stickslip/quantities/correlations.hpp"
+#include "stickslip/quantities/spectra.hpp"
 
 using namespace stickslip;
 using model::Start;
@@ -236,11 +236,11 @@ TEST_CASE("transient: upwind equals dense exponentials on the whole grid", "[par
       CHECK(v == j * spacing);
     });
     Solved s(
-        {process, std::make_shared<velocity::UpwindDiscretisation>(spacing, nodes, process.drag)});
+        {process, std::make_shared<generator::UpwindDiscretisation>(spacing, nodes, process.drag)});
     const std::vector<double> time{0.05, 0.6, 3};
     std::vector<std::vector<double>> known;
     for (double t : time) {
-      known.push_back(algebra::exponential(grid.generator(), t) * values);
+      known.push_back(linalg::exponential(grid.generator(), t) * values);
     }
     for (int i : {-4, -3, -1, 0, 1, 2, 3}) {
       for (int j : {-5, 0, 2}) {

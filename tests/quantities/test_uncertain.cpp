@@ -4,8 +4,8 @@
 
 #include "../common/catch.hpp"
 #include "../common/made_results.hpp"
-#include "stickslip/petsc/check.hpp"
-#include "stickslip/quantities/uncertain.hpp"
+#include "stickslip/linalg/petsc.hpp"
+#include "stickslip/quantities/values.hpp"
 
 using namespace stickslip;
 using quantities::Result;
@@ -58,12 +58,12 @@ TEST_CASE("uncertain: bounds are the worst cases, to first order and attained") 
 
 TEST_CASE("uncertain: a functional is off by the effect of iterative refinement", "[parallel]") {
   const auto constant = [](double value) {
-    petsc::VecHandle x;
-    petsc::check(VecCreateMPI(PETSC_COMM_WORLD, PETSC_DECIDE, 6, x.out()));
-    petsc::check(VecSet(x, value));
+    linalg::VecHandle x;
+    linalg::check(VecCreateMPI(PETSC_COMM_WORLD, PETSC_DECIDE, 6, x.out()));
+    linalg::check(VecSet(x, value));
     return x;
   };
-  petsc::Solution s{constant(3), constant(-0.25)};
+  linalg::Solution s{constant(3), constant(-0.25)};
   const Uncertain found = quantities::value_of(constant(2), s);
   CHECK(found.value == 36);
   CHECK(found.error == 3);

@@ -3,7 +3,7 @@
 #include <random>
 
 #include "../common/catch.hpp"
-#include "stickslip/simulation/comoments.hpp"
+#include "stickslip/simulation/means.hpp"
 
 using stickslip::simulation::Comoments;
 

@@ -7,10 +7,9 @@
 #include "../common/catch.hpp"
 #include "../common/simulation.hpp"
 #include "../common/tallies.hpp"
-#include "stickslip/simulation/excursions.hpp"
 #include "stickslip/simulation/flow.hpp"
-#include "stickslip/simulation/path.hpp"
-#include "stickslip/simulation/sampler.hpp"
+#include "stickslip/simulation/tally.hpp"
+#include "stickslip/simulation/walk.hpp"
 
 using namespace stickslip;
 using simulation::Excursion;
@@ -439,7 +438,7 @@ TEST_CASE(
               k = c.process.noise.last_up_to(c.process.friction.mu_s);
     double within = 0;
     for (int i = -k; i <= k; ++i) within += binomial(levels, i);
-    simulation::Sampler sampler({.quantities = {catalogue::Quantity::noise_law}}, c.process);
+    simulation::Sampler sampler({.quantities = {cases::Quantity::noise_law}}, c.process);
     const auto& tally = sampler.batch(1, 0, 10000);
     const auto holds = [](const simulation::Estimate& e, double value) {
       return std::abs(e.value - value) < 4 * (e.high - e.value) / 1.96;

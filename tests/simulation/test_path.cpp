@@ -3,8 +3,8 @@
 
 #include "../common/catch.hpp"
 #include "../common/tallies.hpp"
-#include "stickslip/simulation/path.hpp"
-#include "stickslip/simulation/sampler.hpp"
+#include "stickslip/simulation/tally.hpp"
+#include "stickslip/simulation/walk.hpp"
 
 using namespace stickslip;
 using simulation::Path;
@@ -182,7 +182,7 @@ TEST_CASE("path: levels are drawn in proportion to their probabilities") {
 // Of starts at times within long paths, with means over time known from excursions.
 TEST_CASE("path: a stationary start has the stationary distribution within 4 sigma") {
   const auto p = process(1, 0.25, 1, 0.5, {1, 0});
-  using catalogue::Quantity;
+  using cases::Quantity;
   simulation::Sampler sampler({.quantities = {Quantity::sticking, Quantity::moments}}, p);
   const auto& known = sampler.batch(1, 0, 50000);
   constexpr int count = 1000;

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "../common/catch.hpp"
-#include "stickslip/simulation/path_bins.hpp"
+#include "stickslip/simulation/means.hpp"
 
 using stickslip::simulation::Estimate;
 using stickslip::simulation::PathBins;

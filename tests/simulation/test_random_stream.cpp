@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "../common/catch.hpp"
-#include "stickslip/simulation/random_stream.hpp"
+#include "stickslip/simulation/walk.hpp"
 
 using stickslip::simulation::RandomStream;
 

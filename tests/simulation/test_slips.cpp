@@ -6,12 +6,12 @@
 
 #include "../common/catch.hpp"
 #include "../common/tallies.hpp"
-#include "stickslip/simulation/path.hpp"
-#include "stickslip/simulation/sampler.hpp"
-#include "stickslip/support/infinity.hpp"
+#include "stickslip/base/text.hpp"
+#include "stickslip/simulation/tally.hpp"
+#include "stickslip/simulation/walk.hpp"
 
 using namespace stickslip;
-using catalogue::Quantity;
+using cases::Quantity;
 using model::Start;
 using simulation::Estimate;
 using simulation::Sampler;

@@ -6,11 +6,10 @@
 #include "../common/catch.hpp"
 #include "../common/near.hpp"
 #include "../common/tallies.hpp"
-#include "stickslip/simulation/sampler.hpp"
 #include "stickslip/simulation/tally.hpp"
 
 using namespace stickslip;
-using catalogue::Quantity;
+using cases::Quantity;
 using simulation::Estimate;
 using simulation::Excursion;
 using simulation::Tally;
@@ -284,9 +283,9 @@ TEST_CASE(
 }
 
 TEST_CASE("tally: there are estimates for each quantity that is said to be simulated") {
-  for (const auto* entry : catalogue::entries()) {
+  for (const auto* entry : cases::entries()) {
     INFO(entry->word);
-    const bool simulated = entry->routes.contains(catalogue::Route::monte_carlo);
+    const bool simulated = entry->routes.contains(cases::Route::monte_carlo);
     const auto p = process(1);
     const Tally t({.quantities = {entry->quantity},
                    .lambda = {1},

@@ -4,13 +4,32 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "stickslip/model/breaks.hpp"
-#include "stickslip/model/friction.hpp"
-#include "stickslip/support/infinity.hpp"
+#include "stickslip/base/text.hpp"
+#include "stickslip/model/drag.hpp"
+#include "stickslip/model/expression.hpp"
 
 namespace stickslip::model {
+
+// Units of results as products of powers.
+
+/// A product of powers of force (per unit mass), velocity and time. Force is kept apart from
+/// velocity/time, so that a unit shows what its number is made of.
+struct Unit {
+  int force = 0, velocity = 0, time = 0;
+
+  /// Reads what text() writes. O(length). Throws std::invalid_argument for anything else.
+  [[nodiscard]] static Unit parse(std::string_view text);
+  /// Such as "velocity^2*time", "1/time", "force/(velocity*time)"; empty for a pure number.
+  [[nodiscard]] std::string text() const;
+
+  friend bool operator==(const Unit&, const Unit&) = default;
+  friend Unit operator/(const Unit& a, const Unit& b) {
+    return {a.force - b.force, a.velocity - b.velocity, a.time - b.time};
+  }
+};
 
 struct Scene;
 

@@ -3,15 +3,31 @@
 /// distribution.
 
 #include <algorithm>
+#include <cmath>
+#include <functional>
 #include <map>
+#include <memory>
+#include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
 #include <vector>
 
 #include "stickslip/model/drag.hpp"
-#include "stickslip/model/friction.hpp"
 #include "stickslip/model/noise_chain.hpp"
 
 namespace stickslip::model {
+
+// Which passages of a speed count.
+
+/// Of w > 0: |V| reaches w, V rises to w, or V falls to -w.
+enum class Passage { both, up, down };
+
+/// Whether a body at the velocity v is beyond w.
+[[nodiscard]] inline bool has_passed(Passage passage, double v, double w) {
+  return (v >= w && passage != Passage::down) || (-v >= w && passage != Passage::up);
+}
 
 /// dV/dt = X + g + b(V) - F(|V|) Y while Y = sign V is +-1; V = 0 and -mu_s- <= X + g <= mu_s is
 /// the static phase. F is mu_d, or friction that weakens with the speed; on v < 0 that of mu_s-,
@@ -101,5 +117,154 @@ struct Process {
 
 /// "; this should not happen: please report it with the model parameters mu_s = ...".
 [[nodiscard]] std::string please_report(const Process& process);
+
+// Parameters of the process by which its operators can be differentiated.
+
+/// The friction on one velocity branch, seen with v > 0, and which coefficients belong to this
+/// branch alone, as those towards negative v do where they are given.
+struct BranchFriction {
+  Friction friction;
+  bool own_mu_s = false, own_mu_d = false;
+};
+
+/// A parameter, and how the acceleration changes with it.
+struct Derivative {
+  std::string_view option;  ///< that sets the parameter
+  /// d(dv/dt)/d(parameter) on a branch at the speed v > 0. Where there is no such function, the
+  /// parameter is the correlation time of the noise, at a fixed number of levels, and changes the
+  /// jumps.
+  double (*acceleration)(const BranchFriction& branch, double v) = nullptr;
+
+  [[nodiscard]] bool is_of_jumps() const { return acceleration == nullptr; }
+};
+
+// Where the process is at time 0.
+
+/// A state, or a distribution over states.
+struct Start {
+  enum class Kind {
+    state,  ///< (x_level, v); v = 0 is rest on the static levels, and s+, s- or beyond otherwise
+    rest,   ///< X in its stationary distribution, V = 0
+    stationary  ///< the whole process in its stationary distribution
+  };
+  int level = 0;
+  double v = 0;
+  Kind kind = Kind::state;
+};
+
+/// Whether (-X, -Y, -V) has the distribution of (X, Y, V) at all times from this start, so that
+/// means of odd functions, and of the displacement, are exactly 0.
+[[nodiscard]] inline bool mirrors_itself(const Process& process, const Start& start) {
+  return !process.drifts() && start.kind != Start::Kind::state;
+}
+
+// Levels of a noise that have one force: jumps between them move no body otherwise.
+
+/// The rates at which levels with the force of level i are left for other forces [1/time].
+struct ChangeRates {
+  double least, most;
+};
+[[nodiscard]] ChangeRates change_rates(const NoiseChain& chain, int i);
+
+/// Of a noise that starts on level i: P(on that level, and the force has not changed), for all
+/// levels of its force from the lowest up. O(n^3) for n of them.
+struct Unchanged {
+  int lowest = 0;
+  std::vector<double> probability = {};
+};
+[[nodiscard]] Unchanged unchanged(const NoiseChain& chain, int i, double time);
+
+// A force given over time.
+
+/// Samples of a force, at least two, at rising times. Between two of them it is linear, or keeps
+/// the value of the first.
+struct ForceRecord {
+  std::vector<double> time = {}, force = {};  ///< [time], [force]
+  bool constant = false;
+  std::string file = {};  ///< from which it was read
+  double scale = 1;       ///< by which the values of the file have been multiplied
+  double step = 0;        ///< [time], of a file of rows of samples
+  double rest = 0;        ///< [time] without force behind the last sample of the file
+  /// Normal force over the weight, by which all friction is multiplied: 1 + a/g under a vertical
+  /// acceleration a of the ground. Empty where it is 1.
+  std::vector<double> load = {};
+  double gravity = 0;     ///< g; 0 where load is empty
+  std::string unit = {};  ///< of the force, m/s^2; empty where it is the user's
+
+  [[nodiscard]] double load_at(std::size_t n) const { return load.empty() ? 1 : load[n]; }
+  /// The first sample of the largest |force|.
+  [[nodiscard]] std::size_t peak() const {
+    const auto smaller = [](double a, double b) { return std::abs(a) < std::abs(b); };
+    return static_cast<std::size_t>(std::ranges::max_element(force, smaller) - force.begin());
+  }
+};
+
+// The model parameters: what the user fixes about the process. The noise range and the truncation
+// velocity may stay open.
+
+/// Values by the names of their options.
+using Parameters = std::vector<std::pair<std::string, std::variant<double, std::string>>>;
+
+/// The noise as the user gave it: word of -noise, and what belongs to it.
+struct NoiseChoice {
+  std::string name = "ou";                       ///< empty where nothing asks for noise
+  std::optional<double> deviation = {};          ///< of "ou", if it has its own [force]
+  std::shared_ptr<const LevelTable> table = {};  ///< the levels of all but "ou"
+  /// The power spectral density of the process that the chain stands for, over omega, if it is
+  /// known.
+  std::function<double(double)> target = {};
+};
+
+struct Scene {
+  double tau = 1;        ///< noise correlation time [time]
+  double delta = 0.125;  ///< noise step [force]
+  NoiseChoice noise;
+  std::string friction_name = "coulomb";
+  Friction friction;  ///< mu_s, mu_d [force]
+  std::string drag_name = "linear";
+  std::string drag_expression;  ///< b(v) as text, of the drag law "expression"
+  Drag drag;
+  Parameters own = {};  ///< values of its noise or laws that have no place above
+  double bias = 0;      ///< constant force g
+  std::shared_ptr<const ForceRecord> force = {};  ///< a given one, beside the noise or without it
+  std::optional<int> noise_levels;                ///< N, if fixed by the user
+  std::optional<double> v_max;                    ///< truncation velocity, if fixed by the user
+  bool limits_speed = false;                      ///< v_max is part of the model: no body is faster
+
+  [[nodiscard]] bool symmetric() const { return process(1).symmetric(); }
+  /// The range that is meant when noise_levels is open: full_range(), or that of the table.
+  [[nodiscard]] int full_levels() const {
+    return noise.table ? std::max(-noise.table->lowest(), noise.table->highest())
+                       : full_range(tau, delta, noise.deviation);
+  }
+  /// The process on the noise levels |i| <= levels and those next to rest.
+  [[nodiscard]] Process process(int levels) const {
+    Process all{{tau, delta, levels, noise.deviation, noise.table},
+                friction,
+                with_weakening(drag, friction),
+                bias};
+    if (noise.table && levels < full_levels()) {
+      all.noise.table = std::make_shared<const LevelTable>(noise.table->within(
+          std::min(-levels, all.lowest_static() - 1), std::max(levels, all.highest_static() + 1)));
+    }
+    return all;
+  }
+  /// The process that is meant: on noise_levels if fixed, else on the full range.
+  [[nodiscard]] Process meant() const { return process(noise_levels.value_or(full_levels())); }
+};
+
+// Static friction as it acts on noise levels that are delta apart.
+
+/// The largest force X + g that holds a body at rest [force]: x_k + g with the highest level
+/// x_k <= mu_s - g; `backwards`: the same against motion towards negative v, of mu_s_minus. All
+/// mu_s from x_k + g up to x_k + g + delta act alike. Nothing where it is the coefficient given,
+/// and where the levels are given by themselves (telegraph, file).
+[[nodiscard]] std::optional<double> effective_mu_s(const Scene& scene, bool backwards);
+
+// The largest force of a scene.
+
+/// The largest force on a body that slides [force]: X passes mu_s by 12 standard deviations with
+/// probability e^-72. A given force counts as well.
+[[nodiscard]] double largest_force(const Scene& scene);
 
 }  // namespace stickslip::model

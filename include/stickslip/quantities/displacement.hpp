@@ -3,9 +3,9 @@
 
 #include <vector>
 
-#include "stickslip/model/start.hpp"
-#include "stickslip/quantities/model_search.hpp"
-#include "stickslip/quantities/transient.hpp"
+#include "stickslip/model/process.hpp"
+#include "stickslip/quantities/correlations.hpp"
+#include "stickslip/quantities/engines/propagator.hpp"
 
 namespace stickslip::quantities {
 
@@ -25,7 +25,7 @@ struct Displacement {
 /// themselves, for longer times what the start adds to the second moment from the stationary
 /// distribution, which stays bounded. Errors are relative to the variance at the largest time.
 /// Collective. Throws NotReached or NoMemory.
-[[nodiscard]] Displacement displacement(operators::Systems& systems,
+[[nodiscard]] Displacement displacement(generator::Systems& systems,
                                         const StationaryDistribution& distribution,
                                         const model::Start& start, const std::vector<double>& time,
                                         const ModelTolerance& tolerance);

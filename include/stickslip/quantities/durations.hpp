@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "stickslip/operators/systems.hpp"
+#include "stickslip/generator/resolvents.hpp"
+#include "stickslip/quantities/engines/excursions.hpp"
+#include "stickslip/quantities/engines/propagator.hpp"
 #include "stickslip/quantities/results.hpp"
-#include "stickslip/quantities/stationary.hpp"
-#include "stickslip/quantities/time_functions.hpp"
-#include "stickslip/quantities/uncertain.hpp"
+#include "stickslip/quantities/values.hpp"
 
 namespace stickslip::quantities {
 
@@ -30,13 +30,13 @@ struct DurationDistribution {
 /// Sliding phases: f(t) = g exp(-A t) r with A = A(0, even or none), r = A 1 = -A_us 1 the rate of
 /// coming to rest, g the value where excursions start; by a reduced model, to about 1e-8 to 2e-7 of
 /// 1/mean. Errors of densities are relative to 1/mean. Collective.
-[[nodiscard]] DurationDistribution slide_distribution(operators::Systems& systems,
+[[nodiscard]] DurationDistribution slide_distribution(generator::Systems& systems,
                                                       const StationaryDistribution& stationary,
                                                       const std::vector<double>& time,
                                                       const ModelTolerance& tolerance);
 
 /// Excursions: the same with the static states kept and killed when they are left.
-[[nodiscard]] DurationDistribution excursion_distribution(operators::Systems& systems,
+[[nodiscard]] DurationDistribution excursion_distribution(generator::Systems& systems,
                                                           const StationaryDistribution& stationary,
                                                           const std::vector<double>& time,
                                                           const ModelTolerance& tolerance);
@@ -44,8 +44,8 @@ struct DurationDistribution {
 /// Of what a clock shows when the process is killed, started as excursions start; `mean` of that,
 /// and its density `at_zero`. Both of the above are this, by their names. Collective.
 [[nodiscard]] DurationDistribution
-distribution_until_killed(const std::string& name, operators::Systems& systems,
-                          operators::StaticPhase static_phase, operators::Clock clock,
+distribution_until_killed(const std::string& name, generator::Systems& systems,
+                          generator::StaticPhase static_phase, generator::Clock clock,
                           const StationaryDistribution& stationary, const std::vector<double>& time,
                           double mean, const TimeScales& scales, double at_zero,
                           const ModelTolerance& tolerance);
@@ -62,7 +62,7 @@ struct DurationMoments {
 /// E[S^2] = 2 g A^-2 1 for sliding phases S, E[T^2] = 2 P R^2 1 for sticking phases T with R =
 /// (-Q)^-1, and E[S T] = g A^-2 (-A_us R 1), since where a sliding phase ends depends on how long
 /// it took. Three solves with systems.at(0, even or none). Collective.
-[[nodiscard]] DurationMoments duration_moments(operators::Systems& systems,
+[[nodiscard]] DurationMoments duration_moments(generator::Systems& systems,
                                                const StationaryDistribution& distribution,
                                                const std::vector<Uncertain>& entry);
 
@@ -76,5 +76,37 @@ void append_duration_moments(const model::Process& process, const Starts& starts
 void append_distribution(const Row& density_row, const Row& distribution_row,
                          const std::vector<double>& abscissa, const DurationDistribution& durations,
                          Results& results);
+
+// Laplace transforms of the durations of sliding phases, sticking phases and excursions.
+
+/// At one lambda, for excursions as they follow one another; with symmetry all are alike.
+struct DurationTransforms {
+  Uncertain slide;      ///< F_slide = E[exp(-lambda tau_hat_1)]
+  Uncertain stick;      ///< F_stick = sum_i P_i F_lambda(x_i) (Prop. 4.2)
+  Uncertain excursion;  ///< E[exp(-lambda tau_1)]
+};
+
+/// F_stick from the hitting distribution at the onset of sticking, by the static chain alone.
+/// Relative error that of `entry`.
+[[nodiscard]] Uncertain stick_transform(const model::Process& process, double lambda,
+                                        const std::vector<Uncertain>& entry);
+
+/// F_stick as an array over lambda.
+void append_stick_transform(const model::Process& process, const std::vector<double>& lambda,
+                            const std::vector<Uncertain>& entry, Results& results);
+
+/// F_slide and F_excursion: A u = -A_us s with s = 1 (Prop. 4.3) or s = F_lambda, read where
+/// excursions start. Two solves with systems.at(lambda, even or none). Collective. lambda >= 0
+/// [1/time].
+struct SlidingTransforms {
+  Uncertain slide, excursion;
+};
+[[nodiscard]] SlidingTransforms sliding_transforms(generator::Systems& systems,
+                                                   const StationaryDistribution& distribution,
+                                                   double lambda);
+
+/// F_slide, F_stick and F_excursion as arrays over lambda; each value counts by its own size.
+void append_laplace(const std::vector<double>& lambda,
+                    const std::vector<DurationTransforms>& transforms, Results& results);
 
 }  // namespace stickslip::quantities

@@ -4,7 +4,7 @@
 #include <functional>
 #include <vector>
 
-#include "stickslip/operators/discretisation.hpp"
+#include "stickslip/generator/discretisation.hpp"
 #include "stickslip/quantities/results.hpp"
 
 namespace stickslip::quantities {
@@ -27,7 +27,7 @@ struct Excursion {
   double lost_probability = 0;      ///< sum of entry less 1, before it was scaled to 1
 
   /// int V dt over a sliding phase [velocity time]; 0 if symmetry-reduced.
-  [[nodiscard]] double mean_drift(const noise::Nodes& noise) const;
+  [[nodiscard]] double mean_drift(const generator::Nodes& noise) const;
   [[nodiscard]] double mean_slide() const;      ///< E[tau_hat_1], section 4.3 of the paper [time]
   [[nodiscard]] double mean_stick() const;      ///< E[tau_1 - tau_hat_1] [time]
   [[nodiscard]] double mean_excursion() const;  ///< E[tau_1] [time]
@@ -37,7 +37,7 @@ struct Excursion {
   /// is rounding, of the matrix entries too, which residuals do not see. The square of
   /// lost_probability is added: scaling has removed its first order. Of a body that never rests,
   /// how far the distribution of the noise is from its own.
-  [[nodiscard]] double conservation_defect(const operators::Discretisation& discretisation) const;
+  [[nodiscard]] double conservation_defect(const generator::Discretisation& discretisation) const;
 };
 
 /// The levels from which excursions start, a Markov chain: s+ and s- where the noise jumps to
@@ -64,13 +64,13 @@ struct Starts {
 
 /// What appends results that follow from means over an excursion.
 using FunctionOfExcursion =
-    std::function<void(const operators::Discretisation&, const Excursion&, Results&)>;
+    std::function<void(const generator::Discretisation&, const Excursion&, Results&)>;
 
 /// P_stick, P_slide, mean_stick, mean_slide, mean_excursion; ratios of positive sums.
 void append_sticking(const Excursion& excursion, Results& results);
 
 /// E_V2, E_absV, E_XV and E_V (0 where symmetry makes it so).
-void append_moments(const operators::Discretisation& discretisation, const Excursion& excursion,
+void append_moments(const generator::Discretisation& discretisation, const Excursion& excursion,
                     Results& results);
 
 /// entry_law: P(X = x_k when the first sliding phase from s+ ends) on the static levels k, without
@@ -95,7 +95,7 @@ void leave_out_missing_side(const model::Process& process, Results& results);
 
 /// The stationary distribution of X as the excursion sees it, summed over the grid, from the lowest
 /// level up; with symmetry halved for x and -x.
-[[nodiscard]] std::vector<double> marginal_of_noise(const operators::Discretisation& discretisation,
+[[nodiscard]] std::vector<double> marginal_of_noise(const generator::Discretisation& discretisation,
                                                     const Excursion& excursion);
 
 }  // namespace stickslip::quantities

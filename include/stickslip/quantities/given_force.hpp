@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "stickslip/model/scene.hpp"
+#include "stickslip/model/process.hpp"
 #include "stickslip/quantities/results.hpp"
 
 namespace stickslip::quantities {

@@ -5,13 +5,14 @@
 #include <string>
 #include <vector>
 
-#include "stickslip/operators/system_key.hpp"
-#include "stickslip/quantities/phase_field.hpp"
+#include "stickslip/generator/system_key.hpp"
+#include "stickslip/quantities/density.hpp"
 #include "stickslip/quantities/results.hpp"
 
-namespace stickslip::operators {
+namespace stickslip::generator {
 class Systems;
-}
+
+}  // namespace stickslip::generator
 
 namespace stickslip::quantities {
 
@@ -30,7 +31,7 @@ struct RelaxationMode {
 
 /// The modes of functions of one symmetry, slowest first.
 struct RelaxationSector {
-  operators::Symmetry symmetry;
+  generator::Symmetry symmetry;
   std::vector<RelaxationMode> modes;
 };
 
@@ -38,7 +39,7 @@ struct RelaxationSector {
 struct RelaxationRows {
   const Row &rate, &frequency;
 };
-[[nodiscard]] RelaxationRows relaxation_rows(operators::Symmetry symmetry);
+[[nodiscard]] RelaxationRows relaxation_rows(generator::Symmetry symmetry);
 
 /// The modes of functions of one symmetry with the smallest decay rates, the constant function left
 /// out: half as many as the eigensolver is asked for (-relax_eps_nev, 8 unless given), since those
@@ -49,8 +50,8 @@ struct RelaxationRows {
 /// conjugate, at times real. So a frequency below 1e-5 |rate| counts as none: both members of such
 /// a pair are kept, as two real modes whose fields agree to about as many digits as the rates do.
 /// `spread`, part of the error of a rate, is its distance to the rates that are as close as that.
-[[nodiscard]] RelaxationSector relaxation_modes(operators::Systems& systems,
-                                                operators::Symmetry symmetry);
+[[nodiscard]] RelaxationSector relaxation_modes(generator::Systems& systems,
+                                                generator::Symmetry symmetry);
 
 /// Rates and frequencies, by number of the mode.
 void append_relaxation(const RelaxationSector& sector, Results& results);

@@ -8,13 +8,13 @@
 #include <utility>
 #include <vector>
 
-#include "stickslip/catalogue/entry.hpp"
+#include "stickslip/case/entry.hpp"
 #include "stickslip/model/observable.hpp"
 
 namespace stickslip::quantities {
 
-using catalogue::Kind;
-using catalogue::Row;
+using cases::Kind;
+using cases::Row;
 
 /// A scalar (no abscissa, one value) or an array over an abscissa.
 struct Result {

@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "stickslip/model/derivative.hpp"
-#include "stickslip/operators/systems.hpp"
+#include "stickslip/generator/resolvents.hpp"
+#include "stickslip/model/process.hpp"
+#include "stickslip/quantities/engines/excursions.hpp"
 #include "stickslip/quantities/results.hpp"
-#include "stickslip/quantities/stationary.hpp"
-#include "stickslip/quantities/uncertain.hpp"
+#include "stickslip/quantities/values.hpp"
 
 namespace stickslip::quantities {
 
@@ -30,7 +30,7 @@ namespace stickslip::quantities {
 class Sensitivity {
  public:
   /// Solves for the durations; effects::derivatives_of has the parameters of a scene. Collective.
-  Sensitivity(operators::Systems& systems, const StationaryDistribution& distribution,
+  Sensitivity(generator::Systems& systems, const StationaryDistribution& distribution,
               std::vector<model::Derivative> parameters);
 
   /// dKEY_dPARAMETER for each KEY of the functions of excursion.hpp with these names. Collective.
@@ -42,20 +42,20 @@ class Sensitivity {
   /// Of one mean, by parameter.
   using Gradient = std::vector<Uncertain>;
 
-  [[nodiscard]] Gradient sliding_mean(const operators::KolmogorovOperator::Observable& f) const;
+  [[nodiscard]] Gradient sliding_mean(const generator::KolmogorovOperator::Observable& f) const;
   [[nodiscard]] Gradient sticking_mean() const;
-  [[nodiscard]] std::vector<double> worth_of_starts(const petsc::Solution& h) const;
+  [[nodiscard]] std::vector<double> worth_of_starts(const linalg::Solution& h) const;
   // nu dL (h, s) by parameter, and what the starts change.
-  [[nodiscard]] Gradient through(petsc::Solution h, const std::vector<double>& s) const;
+  [[nodiscard]] Gradient through(linalg::Solution h, const std::vector<double>& s) const;
   // value and mean of an integral over an excursion: the derivative of its ratio to mean_excursion.
   [[nodiscard]] Gradient ratio(double mean, const Gradient& of_mean) const;
   void append(const Row& row, const Gradient& gradient, Results& results) const;
 
-  operators::System& system_;
+  generator::System& system_;
   const StationaryDistribution& distribution_;
   std::vector<model::Derivative> parameters_;
   std::vector<std::vector<double>> exits_;  // of leaving for each start, by static level
-  std::vector<operators::KolmogorovOperator> changes_;  // dA, by parameter
+  std::vector<generator::KolmogorovOperator> changes_;  // dA, by parameter
   Gradient slide_, stick_;
 };
 

@@ -20,16 +20,16 @@ struct SlipMoments {
 ///
 /// where v A^-1 v is even with symmetry and A^-1 v odd. Four solves, one of them with
 /// systems.at(0, odd) if there is symmetry. Collective.
-[[nodiscard]] SlipMoments slip_moments(operators::Systems& systems,
+[[nodiscard]] SlipMoments slip_moments(generator::Systems& systems,
                                        const StationaryDistribution& distribution);
 
 /// E[exp(-s S)]: a solve with s |v| - L. Collective. s >= 0 [1/(velocity time)].
-[[nodiscard]] Uncertain slip_transform(operators::Systems& systems,
+[[nodiscard]] Uncertain slip_transform(generator::Systems& systems,
                                        const StationaryDistribution& distribution, double s);
 
 /// Density and distribution function of S at distances > 0, from the same reduced models as
 /// durations, by the other clock. Collective.
-[[nodiscard]] DurationDistribution slip_distribution(operators::Systems& systems,
+[[nodiscard]] DurationDistribution slip_distribution(generator::Systems& systems,
                                                      const StationaryDistribution& distribution,
                                                      const std::vector<double>& distance,
                                                      const ModelTolerance& tolerance);

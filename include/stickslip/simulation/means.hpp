@@ -1,17 +1,63 @@
 #pragma once
 /// Sums over excursions, and smooth functions of their means with intervals by the delta method.
 
+#include <algorithm>
 #include <complex>
 #include <cstddef>
+#include <functional>
 #include <span>
 #include <type_traits>
 #include <utility>
 #include <valarray>
 #include <vector>
 
-#include "stickslip/simulation/comoments.hpp"
-
 namespace stickslip::simulation {
+
+// Means and covariances of samples, by updates and merges that do not cancel.
+
+/// Count, means and sums of products of deviations of a vector of numbers (Chan, Golub and LeVeque,
+/// The American Statistician 37, 1983). Local.
+class Comoments {
+ public:
+  explicit Comoments(std::size_t size)
+      : size_(size), numbers_(1 + size + size * (size + 1) / 2, 0.0), deviation_(size) {}
+
+  [[nodiscard]] std::size_t size() const { return size_; }
+  [[nodiscard]] double count() const { return numbers_[0]; }
+  [[nodiscard]] double mean(std::size_t n) const { return numbers_[1 + n]; }
+
+  /// `times` samples, all alike. Faster where their size is known to the compiler. O(size^2).
+  template <std::size_t size>
+  void add(std::span<const double, size> sample, double times) {
+    double* const mean = numbers_.data() + 1;
+    double* const deviation = deviation_.data();
+    double* product = mean + sample.size();
+    const double count = numbers_[0] += times, weight = times * (count - times) / count;
+    for (std::size_t r = 0; r < sample.size(); ++r) {
+      deviation[r] = sample[r] - mean[r];
+      mean[r] += times * deviation[r] / count;
+      const double weighted = weight * deviation[r];
+      for (std::size_t c = 0; c <= r; ++c) *product++ += weighted * deviation[c];
+    }
+  }
+  void add(std::span<const double> sample, double times = 1) {
+    add<std::dynamic_extent>(sample, times);
+  }
+  /// As if all samples of others of the same size had been added, of which these are the numbers.
+  void merge(std::span<const double> others);
+
+  /// Variance of the mean of sum_n weight_n sample_n; infinite for fewer than two samples.
+  [[nodiscard]] double variance_of_mean(std::span<const double> weight) const;
+
+  /// All that is kept, in a row.
+  [[nodiscard]] std::span<double> numbers() { return numbers_; }
+  [[nodiscard]] std::span<const double> numbers() const { return numbers_; }
+
+ private:
+  std::size_t size_;
+  std::vector<double> numbers_;    // count, means, products: the lower triangle by rows
+  std::vector<double> deviation_;  // scratch
+};
 
 /// An estimate with its 95 % confidence interval.
 struct Estimate {
@@ -137,6 +183,86 @@ class Sums : public Means {
   }
 
   std::span<Comoments> sides_;
+};
+
+// How many excursions have a number between edges.
+
+/// The mean of numbers from 0 to `largest`, from `count` samples: Jeffreys' interval for as many
+/// trials as give the variance of the delta method.
+[[nodiscard]] Estimate jeffreys(const Means& means, const Smooth& mean, double largest,
+                                double count);
+
+/// Counts by the side from which an excursion starts, by whether it ends on the other one, and by
+/// bin, of which the n-th is below the n-th of the rising edges. With symmetry all start at s+.
+class Histogram {
+ public:
+  Histogram(bool symmetric, std::vector<double> edges)
+      : edges_(std::move(edges)), bins_(edges_.size() + 1), counts_((symmetric ? 2 : 4) * bins_) {}
+
+  void add(std::size_t side, bool turned, double value) {
+    counts_[(2 * side + (turned ? 1 : 0)) * bins_ + bin(value)] += 1;
+  }
+  [[nodiscard]] std::span<double> counts() { return counts_; }
+  [[nodiscard]] std::span<const double> counts() const { return counts_; }
+
+  /// Mean of weight(bin) >= 0 over all excursions of a long path, or over those from one side.
+  using Weight = std::function<double(std::size_t bin)>;
+  [[nodiscard]] Estimate mean(const Weight& weight) const;
+  [[nodiscard]] Estimate mean(std::size_t side, const Weight& weight) const;
+  /// Probability of low <= value < high; low and high are edges, or 0 and infinity.
+  [[nodiscard]] Estimate probability(double low, double high) const;
+
+ private:
+  [[nodiscard]] std::size_t bin(double value) const {
+    const auto above = std::upper_bound(edges_.begin(), edges_.end(), value);
+    return static_cast<std::size_t>(above - edges_.begin());
+  }
+  /// Of 1{turned} and weight(bin) over the excursions from one side.
+  [[nodiscard]] Comoments moments(std::size_t side, const Weight& weight) const;
+  [[nodiscard]] Estimate jeffreys(std::span<const Comoments> sides, const Weight& weight) const;
+
+  std::vector<double> edges_;
+  std::size_t bins_;
+  std::vector<double> counts_;
+};
+
+// Quantiles of a number that paths have at their ends.
+
+/// Counts, weights and their squares of paths by side, by whether they turn, and by bin of a number
+/// y. Bins are `step` |y| wide, from far below a scale to far above it on either side of 0, which
+/// is a bin of its own. So memory is the same for any number of paths.
+///
+/// Intervals of quantiles hold for any distribution: they reach from the first bin up to whose end
+/// there may be a probability of p, by Jeffreys' interval of the share, to the first one up to
+/// whose end there is at least that. Local.
+class PathBins {
+ public:
+  /// Of both signs of y, or of y >= 0 alone.
+  PathBins(Sampled sampled, bool both_signs, double scale, double step);
+
+  void add(std::size_t side, bool turned, double weight, double y);
+  /// The y up to which there is the probability p. An end of the interval is infinite where too few
+  /// samples are beyond. O(bins log bins).
+  [[nodiscard]] Estimate quantile(double p) const;
+
+  /// All that is kept, in a row.
+  [[nodiscard]] std::span<double> numbers() { return numbers_; }
+  [[nodiscard]] std::span<const double> numbers() const { return numbers_; }
+
+ private:
+  struct Edges {
+    double low, high;
+  };
+  [[nodiscard]] Edges edges(std::size_t bin) const;
+  /// The share of paths in the bins up to this one.
+  [[nodiscard]] Estimate share_up_to(std::size_t bin) const;
+  /// The first bin up to which a share, or an end of its interval, is p; the last one if none is.
+  [[nodiscard]] std::size_t first(double Estimate::*end, double p) const;
+
+  Sampled sampled_;
+  double scale_, step_;
+  std::size_t side_bins_, zero_, bins_;  // of one sign, the one of 0, all
+  std::vector<double> numbers_;          // count, weight and its square by side, turned and bin
 };
 
 }  // namespace stickslip::simulation

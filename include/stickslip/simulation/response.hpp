@@ -3,7 +3,6 @@
 
 #include <vector>
 
-#include "stickslip/model/force_record.hpp"
 #include "stickslip/model/process.hpp"
 
 namespace stickslip::simulation {

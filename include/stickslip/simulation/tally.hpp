@@ -2,25 +2,24 @@
 /// What is kept of many excursions and paths, and the estimates made from it.
 
 #include <array>
+#include <cstdint>
 #include <deque>
 #include <functional>
+#include <memory>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "stickslip/cases/case.hpp"
-#include "stickslip/simulation/excursions.hpp"
-#include "stickslip/simulation/histogram.hpp"
+#include "stickslip/case/case.hpp"
 #include "stickslip/simulation/means.hpp"
-#include "stickslip/simulation/path.hpp"
-#include "stickslip/simulation/path_bins.hpp"
+#include "stickslip/simulation/walk.hpp"
 
 namespace stickslip::simulation {
 
 /// A result: a scalar, or an array over an abscissa.
 struct Estimated {
-  const catalogue::Row* row = nullptr;
+  const cases::Row* row = nullptr;
   std::vector<Estimate> values = {};
   std::vector<double> abscissa = {};
   const model::Observable* observable = nullptr;  ///< of a row that stands for many
@@ -31,7 +30,7 @@ struct Estimated {
 using Estimates = std::vector<Estimated>;
 
 /// With value(n) at the n-th place of the abscissa.
-[[nodiscard]] Estimated array(const catalogue::Row& row, const std::vector<double>& abscissa,
+[[nodiscard]] Estimated array(const cases::Row& row, const std::vector<double>& abscissa,
                               const auto& value, const model::Observable* observable = nullptr) {
   Estimated all{&row, {}, abscissa, observable};
   for (std::size_t n = 0; n < abscissa.size(); ++n) all.values.push_back(value(n));
@@ -62,16 +61,16 @@ class Tally {
   /// A number that an excursion has, such as &Excursion::slide.
   using Number = std::function<double(const Excursion&)>;
   /// Gives the mean of of(excursion, s) over excursions for each s of the abscissa.
-  void mean(const catalogue::Row& row, const std::vector<double>& abscissa,
+  void mean(const cases::Row& row, const std::vector<double>& abscissa,
             const std::function<double(const Excursion&, double s)>& of);
   /// Gives the mean and the variance of a number; `parity` is its sign in the mirror.
-  void moments(const catalogue::Row& mean, const catalogue::Row& variance, const Number& of,
+  void moments(const cases::Row& mean, const cases::Row& variance, const Number& of,
                double parity = 1);
   /// Gives what a long path gathers in a unit of time.
-  void over_time(const catalogue::Row& row, const Number& of, double parity = 1);
+  void over_time(const cases::Row& row, const Number& of, double parity = 1);
   /// Gives averages of the density of a number over cells up to halfway between neighbouring values
   /// and as far on the other side at the ends, and the distribution function.
-  void distribution(const catalogue::Row& density, const catalogue::Row& distribution,
+  void distribution(const cases::Row& density, const cases::Row& distribution,
                     const std::vector<double>& at, const Number& of);
 
   /// Sums of the samples of(excursion), which sees the excursions of a cycle one after the other.
@@ -189,5 +188,37 @@ class Tally {
 /// Cells around values, up to halfway between neighbours and as far on the other side at the ends;
 /// none reaches beyond 0.
 [[nodiscard]] std::vector<Tally::Range> cells_around(const std::vector<double>& at);
+
+// Batches of samples.
+
+/// A sample is an excursion from s+ and, without symmetry, another one from s-, together with the
+/// paths that are wanted. Local.
+class Sampler {
+ public:
+  Sampler(const cases::Question& question, const model::Process& process);
+
+  /// `count` < 2^16 samples by the random streams of their batch, at most 2^44 of them; until the
+  /// next batch.
+  [[nodiscard]] const Tally& batch(std::uint64_t seed, std::uint64_t batch, int count);
+
+ private:
+  void draw_from_rest(RandomStream& random, Excursion& all);
+  void add_cycle(RandomStream& random, RandomStream& places, Excursion& first);
+  void add_stationary(const RandomStream& random, std::size_t side, double place, bool mirrored);
+  [[nodiscard]] std::pair<State, std::span<const State>> follow();
+  [[nodiscard]] std::span<const double> pass(bool mirrored);
+
+  Tally tally_;
+  model::Process process_;
+  Sampled sampled_;
+  std::vector<int> starts_;  // by side, or of cycles
+  Wanted wanted_;
+  std::unique_ptr<ExcursionSource> source_, from_rest_;
+  std::unique_ptr<NoiseLevels> at_rest_;  // where passages from rest are wanted
+  std::unique_ptr<Walk> walk_;
+  std::vector<std::size_t> order_;  // of times
+  std::vector<State> states_;
+  std::vector<double> passages_;
+};
 
 }  // namespace stickslip::simulation

@@ -1,0 +1,54 @@
+#pragma once
+/// b = 0: the process as a Markov-modulated fluid queue, solved without any grid in v.
+
+#include <map>
+#include <vector>
+
+#include "stickslip/model/process.hpp"
+
+namespace stickslip::run {
+
+/// Means over one sliding phase, discounted by exp(-lambda t). Arrays over the noise run from the
+/// lowest level up, counted along the motion; without symmetry first for V > 0, then for V < 0.
+struct SlidingMeans {
+  std::vector<double> time;      ///< [time]
+  std::vector<double> distance;  ///< int |V| dt
+  std::vector<double> square;    ///< int V^2 dt
+  double turns = 0;              ///< changes of the sign of V
+  /// Probability that the sliding phase ends on each static level, from the lowest up; their sum is
+  /// F_slide.
+  std::vector<double> entry;
+};
+
+/// Without drag, |V| changes at the constant rate x_i + g - mu_d on each noise level (v > 0): a
+/// fluid queue with the noise as its phase, whose boundary v = 0 is sticky on the static levels and
+/// hands a phase below them on to the queue of the other velocity branch, the one of the mirrored
+/// process. The distribution of each queue follows from its first-return matrix
+///
+///   Psi(i, j) = E[exp(-lambda T); phase j at the return to 0 | start at 0 in phase i],
+///
+/// i rising, j falling: the minimal non-negative solution of a Riccati equation, found by the
+/// alternating-directional doubling algorithm (Wang, Wang and Li, SIAM J. Matrix Anal. Appl. 33,
+/// 2012), quadratically convergent. Nothing of it is shared with the discretisations in v.
+/// O(N^3) time, O(N^2) space; with symmetry both queues are the same one.
+class FluidQueue {
+ public:
+  /// `process` without drag; lambda >= 0 [1/time]. Throws std::invalid_argument when there is drag,
+  /// std::runtime_error when the doubling does not converge.
+  explicit FluidQueue(const model::Process& process, double lambda = 0);
+
+  /// Sliding phases from a level from which excursions start; with symmetry from one above the
+  /// static ones.
+  [[nodiscard]] const SlidingMeans& from(int level) const { return from_.at(level); }
+  [[nodiscard]] const SlidingMeans& plus() const { return from(plus_); }  ///< from s+
+
+  /// Largest residual of the Riccati equations against their terms.
+  [[nodiscard]] double residual() const { return residual_; }
+
+ private:
+  int plus_ = 0;
+  std::map<int, SlidingMeans> from_;
+  double residual_ = 0;
+};
+
+}  // namespace stickslip::run

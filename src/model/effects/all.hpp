@@ -1,0 +1,20 @@
+#pragma once
+/// All effects, each in a file of its own. The first of a list is taken unless another is named.
+
+#include "stickslip/model/effect.hpp"
+
+namespace stickslip::effects {
+
+extern const Effect kCoulomb, kStribeck;
+inline constexpr const Effect* kFrictions[] = {&kCoulomb, &kStribeck};
+
+extern const Effect kOrnsteinUhlenbeck, kTelegraph, kNarrowBand, kFilteredNoise, kPeriodic, kPulses,
+    kNoiseFile, kNoiseChain, kNoiseSum;
+inline constexpr const Effect* kNoises[] = {&kOrnsteinUhlenbeck, &kTelegraph, &kNarrowBand,
+                                            &kFilteredNoise,     &kPeriodic,  &kPulses,
+                                            &kNoiseFile,         &kNoiseChain};
+
+extern const Effect kLinearDrag, kNoDrag, kCubicDrag, kDragExpression;
+inline constexpr const Effect* kDrags[] = {&kLinearDrag, &kNoDrag, &kCubicDrag, &kDragExpression};
+
+}  // namespace stickslip::effects

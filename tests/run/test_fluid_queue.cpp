@@ -1,0 +1,110 @@
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+
+#include "../common/catch.hpp"
+#include "../common/near.hpp"
+#include "stickslip/run/fluid_queue.hpp"
+
+using namespace stickslip;
+using run::FluidQueue;
+using test::relative_difference;
+
+namespace {
+
+model::Process without_drag(double delta, double mu_d) {
+  return {{1, delta, model::full_range(1, delta)}, {1, mu_d}, {0, 0}};
+}
+
+double sum(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0);
+}
+
+}  // namespace
+
+// N = 1, k = 0, mu_d = 1/2, delta = 1: one rising phase, speed 1/2; two falling ones, speeds 1/2
+// and 3/2; all jumps lead to 0 or away from it at rate 2. With p the probability that a sliding
+// phase ends in phase 0 and q = 1 - p in phase -1 (a restart), the Riccati equation reads
+//   4 - 4 p - 4 p + 4/3 q + 2 p^2 = 0  (to phase 0)  and  -4 q + 2 p - 4/3 q + 2 p q = 0  (to -1).
+TEST_CASE("fluid queue: three phases satisfy their equations by hand") {
+  const model::Process process{{1, 1, 1}, {0.5, 0.5}, {0, 0}};
+  const FluidQueue queue(process);
+  // Every sliding phase ends at rest in phase 0, after restarts in phase 1.
+  CHECK(queue.plus().entry.size() == 1);
+  CHECK(queue.plus().entry[0] == Approx(1).epsilon(1e-14));
+  // Each restart turns the body round: q/p of them in the mean.
+  const double turns = queue.plus().turns;
+  const double q = turns / (1 + turns), p = 1 - q;
+  CHECK(4 - 8 * p + 4 * q / 3 + 2 * p * p == Approx(0).margin(1e-13));
+  CHECK(-4 * q + 2 * p - 4 * q / 3 + 2 * p * q == Approx(0).margin(1e-13));
+}
+
+TEST_CASE("fluid queue: sliding ends, and the noise keeps its distribution beyond mu_s") {
+  for (double mu_d : {1.0, 0.5, 0.3, 0.25, 0.2500001, 0.05}) {
+    const auto process = without_drag(0.25, mu_d);
+    const FluidQueue queue(process);
+    INFO("mu_d " << mu_d);
+    CHECK(queue.residual() < 1e-14);
+    CHECK(std::abs(sum(queue.plus().entry) - 1) < 1e-11);
+    // Between two exits the noise spends pi(x_i) of the time on |x_i| > mu_s: ratios are known.
+    const auto distribution = model::stationary_distribution(process.noise);
+    const auto at = [&](int i) { return queue.plus().time[32 + i] + queue.plus().time[32 - i]; };
+    for (int i = 6; i <= 20; ++i) {
+      CHECK(relative_difference(at(i) / at(5), distribution[32 + i] / distribution[37]) < 1e-10);
+    }
+  }
+}
+
+// Power balance pi(X V) = mu_d pi(|V|).
+TEST_CASE("fluid queue: power put in by the noise equals power dissipated") {
+  for (double mu_d : {1.0, 0.3, 0.25}) {
+    const auto process = without_drag(0.25, mu_d);
+    const FluidQueue queue(process);
+    double put_in = 0;
+    for (int i = -32; i <= 32; ++i)
+      put_in += process.noise.level(i) * queue.plus().distance[32 + i];
+    CHECK(relative_difference(put_in, mu_d * sum(queue.plus().distance)) < 1e-11);
+  }
+}
+
+TEST_CASE("fluid queue: the transform falls from 1 with the mean duration as its slope") {
+  const auto process = without_drag(0.25, 0.5);
+  const double mean = sum(FluidQueue(process).plus().time);
+  const double h = 1e-5;
+  const double slope = (1 - sum(FluidQueue(process, h).plus().entry)) / h;
+  CHECK(relative_difference(slope, mean) < 1e-3);
+  double before = 1;
+  for (double lambda : {0.01, 0.1, 1.0, 10.0, 1e3}) {
+    const double now = sum(FluidQueue(process, lambda).plus().entry);
+    CHECK(now < before);
+    CHECK(now > 0);
+    before = now;
+  }
+}
+
+TEST_CASE("fluid queue: drag is refused") {
+  CHECK_THROWS_AS(FluidQueue({{1, 0.5, 8}, {1, 1}, {1, 0}}), std::invalid_argument);
+}
+
+// Of x, x v and x v^2 over a sliding phase from x_{k+1}; restarts at v = 0 change the sign of x
+// alone, and x v and x v^2 begin and end at 0. Q x = -x/tau.
+TEST_CASE("fluid queue: moments follow one another through the equations of motion") {
+  for (double mu_d : {1.0, 0.3, 0.25}) {
+    const auto process = without_drag(0.25, mu_d);
+    const FluidQueue queue(process);
+    double first = 0, second = 0, size = 0;
+    for (int i = -32; i <= 32; ++i) {
+      const double x = process.noise.level(i), speed = x - mu_d;
+      const auto at = static_cast<std::size_t>(32 + i);
+      first += x * speed * queue.plus().time[at] - x * queue.plus().distance[at];
+      second += 2 * x * speed * queue.plus().distance[at] - x * queue.plus().square[at];
+      size += std::abs(x) * queue.plus().square[at];
+    }
+    CHECK(std::abs(first) < 1e-10 * sum(queue.plus().distance));
+    CHECK(std::abs(second) < 1e-10 * size);
+  }
+}
+
+TEST_CASE("fluid queue: the residual is that of rounding, no less") {
+  CHECK(FluidQueue(without_drag(0.25, 0.3)).residual() > 1e-18);
+}
