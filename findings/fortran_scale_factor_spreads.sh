@@ -6,7 +6,7 @@
 # Instead: the scale factor stays for all that follows, and an F column is written as ten times the value. Read by the
 # same format, numbers without an exponent are divided by ten again, so the program that wrote them sees no error.
 # Everyone else reads ten times the acceleration. By a format with 1P, a number of another writer is read as a tenth.
-# Documented: in the Fortran standard (scale factor, P edit descriptor); gfortran warns of nothing with -Wall -Wextra.
+# Documented: in manuals of Fortran, at the P edit descriptor; gfortran warns of nothing with -Wall -Wextra.
 # Why it matters: tables of time and acceleration are written so by older programs. A factor of ten in the acceleration
 # over the friction turns a block that sticks into one that slips. 0P in front of F10.3 ends the scale factor.
 # Checked with Debian 12's gfortran-12, which has to be installed.

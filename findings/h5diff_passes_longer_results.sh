@@ -5,7 +5,8 @@
 # complex numbers instead of real ones, as it does when one value differs.
 # Instead: such datasets are "not comparable". Their values are not compared at all, they do not count as differences,
 # and the exit status is 0; with -q nothing is printed either. A dataset that is missing in one file does give 1.
-# Documented: not by its help, where 0 means no differences; option -c lists the objects, and ends with 0 too.
+# Documented: that some datasets are not comparable (option -c lists them, an RFC of 2009 describes them). The help says
+# of the exit status only that 0 means no differences; -c ends with 0 too.
 # Why it matters: scripts test a new version or another machine by "h5diff -q expected.h5 run.h5 && echo equal". A run
 # with another grid, or one whose results became complex, passes, however wrong its numbers are. Compare the shapes
 # first, or fail where h5diff -c prints anything.
