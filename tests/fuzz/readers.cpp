@@ -391,8 +391,8 @@ void run_one(const Target& target, const std::string& file, Count& count) {
   }
 }
 
-Count run(const Target& target, std::size_t inputs, std::uint64_t seed,
-          const test::TemporaryFolder& folder) {
+Count feed(const Target& target, std::size_t inputs, std::uint64_t seed,
+           const test::TemporaryFolder& folder) {
   constexpr unsigned patience = 60;
   fuzz::Mutator mutator(seed);
   Count count;
@@ -430,7 +430,7 @@ int main(int argc, char** argv) {
                            "faults");
   Count sum;
   for (const auto& target : targets(Corpus(folder))) {
-    const Count c = run(target, inputs * target.share / 100, seed, folder);
+    const Count c = feed(target, inputs * target.share / 100, seed, folder);
     const auto all = c.taken + c.refused + c.faults;
     std::cout << fmt::format("{:14} {:7} {:7} {:7} {:7}\n", target.name, all, c.taken, c.refused,
                              c.faults)
