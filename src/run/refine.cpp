@@ -395,16 +395,17 @@ class Refiner {
         run::add_discretisation(sequence_.error_per_change(n), outcome_.results, changes_, results);
   }
 
-  // Where rounding grows with the degree, an earlier step was better.
+  // Where rounding grows with the degree, an earlier step was better by far. By less than that,
+  // estimates differ by chance, and the least of them would be too small.
   void keep_more_accurate(Results& results) const {
-    constexpr double much = 2;
+    constexpr double mostly = 2, far = 30;
     constexpr std::size_t without_estimate = 2;
     if (outcome_.steps.size() <= without_estimate) return;
     for (std::size_t r = 0; r < results.size(); ++r) {
       const auto& before = outcome_.results[r];
       const double error = quantities::relative_error(results[r]);
-      const bool rounded = rounding_[r] > question_.accuracy && rounding_[r] > error / much;
-      if (rounded && error > much * quantities::relative_error(before)) results[r] = before;
+      const bool rounded = rounding_[r] > question_.accuracy && rounding_[r] > error / mostly;
+      if (rounded && error > far * quantities::relative_error(before)) results[r] = before;
     }
   }
 
