@@ -23,8 +23,6 @@ using test::Row;
 
 namespace {
 
-constexpr bool kComplex = PetscDefined(USE_COMPLEX);
-
 // A walk round a ring, one way: 1 on the diagonal, -1 after it. Eigenvalues 1 - exp(2 pi i m/n).
 MatHandle ring(PetscInt n) {
   return matrix(n, [n](PetscInt r) { return Row{{r, 1}, {(r + 1) % n, -1}}; });
