@@ -4,7 +4,6 @@
 
 namespace stickslip::cli {
 
-// Each in a file of its own.
 extern const Output kSummary, kHdf5, kStudyCsv, kSweepCsv, kTrajectory, kTable;
 
 std::span<const Output* const> all() {

@@ -1,5 +1,5 @@
 #pragma once
-/// Steps of reading a request, each in a file of its own, and those that sweeps share.
+/// Steps of reading a request, some of which sweeps share.
 
 #include <optional>
 #include <string>

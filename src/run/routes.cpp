@@ -38,7 +38,7 @@ struct Computation {
   Evaluation (*evaluate)(const Problem&);
 };
 
-// All methods that have a discretisation, each in a file of its own.
+// All methods that have a discretisation.
 constexpr Computation kComputations[] = {{Route::excursion, by_excursion},
                                          {Route::lambda, by_lambda},
                                          {Route::hitting, by_hitting},

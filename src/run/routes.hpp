@@ -1,5 +1,5 @@
 #pragma once
-/// The solution methods behind evaluate(), each in a file of its own.
+/// The solution methods behind evaluate(), and what they share.
 
 #include <vector>
 

@@ -1,6 +1,6 @@
 #include "stickslip/quantities/durations.hpp"
 #include "stickslip/quantities/plan.hpp"
-#include "waiting_keys.hpp"
+#include "waiting_rows.hpp"
 
 namespace stickslip::quantities {
 

@@ -1,5 +1,5 @@
 #include "stickslip/simulation/tally.hpp"
-#include "waiting_keys.hpp"
+#include "waiting_rows.hpp"
 
 namespace stickslip::simulation {
 

@@ -23,6 +23,9 @@ import sys
 import tempfile
 
 HERE = pathlib.Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parents[1] / "validation"))
+import harness
+
 VALUES = HERE / "values.csv"
 DATA = HERE.parent / "data"
 
@@ -87,10 +90,7 @@ QUESTIONS = {
     "transform_of_displacement": "displacement_transform -wavenumber 0.5,2 -time 1 -start rest -accuracy 1e-5",
     "displacements": "displacement_distribution -time 2 -distance 0.1,0.5 -probability 0.5,0.9 -start rest -accuracy 3e-2",
 }
-# Open MPI refuses root and more ranks than cores unless told otherwise.
-ENVIRONMENT = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "OMPI_ALLOW_RUN_AS_ROOT": "1",
-               "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_rmaps_base_oversubscribe": "1",
-               "PRTE_MCA_rmaps_default_mapping_policy": ":oversubscribe"}
+ENVIRONMENT = {**harness.MPI_PERMISSIONS, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
 UPWIND = "-scheme upwind -p 4"
 METHODS = {
     "lambda": f"-route lambda {UPWIND} -quantities sticking,moments,averages -observable v^2",

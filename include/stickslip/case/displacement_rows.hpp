@@ -1,6 +1,6 @@
 #pragma once
-/// The quantity displacement_distribution: density, distribution function and quantiles of the
-/// displacement.
+/// The quantities of the displacement, their keys and arguments: mean and variance, transform,
+/// distribution, large deviations.
 
 #include "stickslip/case/entry.hpp"
 
@@ -73,6 +73,9 @@ inline constexpr Entry kDisplacementTransform{
     .rows = kDisplacementTransformRows,
     .weighs_tail = true,
     .both_branches = true};
+
+// The quantity displacement_distribution: density, distribution function and quantiles of the
+// displacement.
 
 inline constexpr Argument kProbability{.option = "probability",
                                        .sentence = "probabilities between 0 and 1 of quantiles",

@@ -1,5 +1,5 @@
 #pragma once
-/// The quantity laplace: Laplace transforms and variances of the durations.
+/// The quantities of durations, their keys and arguments: densities and transforms.
 
 #include "stickslip/case/entry.hpp"
 
@@ -101,6 +101,8 @@ inline constexpr Entry kStickTransform{
     .options = "lambda",
     .others = "F_stick",
     .of_phases = true};
+
+// The quantity laplace: Laplace transforms and variances of the durations.
 
 inline constexpr Row kTransformSlide{.key = "F_slide",
                                      .symbol = "E_exc[exp(-lambda T_slide)]",

@@ -1,9 +1,11 @@
 #pragma once
-/// The quantity given_force: the motion of a body under a force from a file.
+/// The quantities of single paths, their keys and arguments: given_force, trajectory.
 
 #include "stickslip/case/entry.hpp"
 
 namespace stickslip::cases {
+
+// The quantity given_force: the motion of a body under a force from a file.
 
 inline constexpr Row kFinalDisplacement{.key = "final_displacement",
                                         .symbol = "x(T)",

@@ -1,6 +1,6 @@
 #pragma once
-/// The quantities passage_transform and passage_distribution: Laplace transform, density and
-/// distribution function of the time until a speed is first reached from -start.
+/// The quantities of speeds that are reached, their keys and arguments: peaks, first passages and
+/// their distributions.
 
 #include "stickslip/case/entry.hpp"
 
@@ -86,6 +86,9 @@ inline constexpr Entry kFirstPassageTime{
     .rows = kFirstPassageRows,
     .weighs_tail = true,
     .both_branches = true};
+
+// The quantities passage_transform and passage_distribution: Laplace transform, density and
+// distribution function of the time until a speed is first reached from -start.
 
 inline constexpr Row kPassageTransform{
     .key = "F_passage(w)",

@@ -1,5 +1,6 @@
 #pragma once
-/// The quantity resolvent: resolvent of the generator, and its parts over one excursion.
+/// The quantities of correlations in time, their keys and arguments: autocorrelation, expectations,
+/// spectra, resolvent, relaxation.
 
 #include "stickslip/case/entry.hpp"
 
@@ -152,6 +153,8 @@ inline constexpr Entry kNoiseSpectrum{
     .options = "omega",
     .rows = kNoiseSpectrumRows,
     .without_limit = true};
+
+// The quantity resolvent: resolvent of the generator, and its parts over one excursion.
 
 inline constexpr Row kHPlus{
     .key = "h_plus",

@@ -1,9 +1,12 @@
 #pragma once
-/// The quantity sticking: probability of sticking, mean durations of the phases.
+/// The quantities of the stationary distribution, their keys and arguments: sticking, moments,
+/// averages, noise_law, entry_law.
 
 #include "stickslip/case/entry.hpp"
 
 namespace stickslip::cases {
+
+// The quantity sticking: probability of sticking, mean durations of the phases.
 
 inline constexpr Row kPStick{.key = "P_stick",
                              .symbol = "P_stick",

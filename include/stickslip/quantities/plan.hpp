@@ -179,8 +179,8 @@ struct Plan {
 /// thing each, and their plan has no tasks. Local.
 [[nodiscard]] Plan plan_of(const cases::Case& given);
 
-/// Collects the tasks of quantities. Each quantity is a function in a file of its own that adds
-/// what it takes; plan.cpp lists them.
+/// Collects the tasks of quantities. Each quantity is a function that adds what it takes; plan.cpp
+/// lists them.
 class Planner {
  public:
   explicit Planner(const cases::Case& given) : given_(given) {}

@@ -1,5 +1,5 @@
 #pragma once
-/// The file of -checkpoint, from which a sweep or a simulation resumes.
+/// Simulations, and the file of -checkpoint, from which a sweep or a simulation resumes.
 
 #include <mpi.h>
 

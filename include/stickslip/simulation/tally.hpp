@@ -37,9 +37,8 @@ using Estimates = std::vector<Estimated>;
   return all;
 }
 
-/// All that is kept for the quantities of a question. Each of them is a function in a file of its
-/// own that says what it follows along excursions or paths, and what it makes of the sums;
-/// tally.cpp lists them.
+/// All that is kept for the quantities of a question. Each of them is a function that says what it
+/// follows along excursions or paths, and what it makes of the sums; tally.cpp lists them.
 ///
 /// Excursions of a long path start from s+ and s- in turn by a Markov chain. Quantities of an
 /// excursion are means over all, so that a stationary mean is E[G]/E[T], with G the integral over

@@ -3,7 +3,7 @@
 import dataclasses
 import re
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from ..needed import needed
 from ..units import KINDS, in_si, is_unit, kind_of
@@ -18,13 +18,6 @@ numpy = needed("numpy")
 COUNTS = re.compile(r"(?:#|unnamed|index|samples?|frames?|points?|number|no|n|i|nr|id|row|count|step|timestep)(?![a-z]).*|",
                     re.IGNORECASE)  # are no times
 EPOCH = 1e8  # times beyond it [s] count from a date
-
-
-def _require(faults: Sequence[tuple[Any, str]]) -> None:
-    """Raises ValueError with the message of the first fault."""
-    for fault, message in faults:
-        if fault:
-            raise ValueError(message)
 
 
 def _named(columns: Sequence[Column], wanted: int | str, option: str, words: bool = False) -> Column:
@@ -97,16 +90,18 @@ def times_of(chosen: Column, times: Column | None, step: float | None, unit: str
         return start + (step or chosen.step) * numpy.arange(len(chosen.values)), notes
     times = times or dataclasses.replace(chosen, values=chosen.times, unit=chosen.time_unit, notes=())
     given, first = unit or times.unit, times.values[0]
+    if len(times.values) != len(chosen.values):
+        raise ValueError(f"time = {times.name}: has {len(times.values)} entries, {chosen.name} has {len(chosen.values)}; name "
+                         "columns of one length")
+    if times.doubt and not unit:
+        raise ValueError(f'time_unit: {times.doubt}; give it, as time_unit="s" or time_unit="ms", or the sampling interval, as '
+                         "step=0.01")
+    if given and kind_of(given) != "time":
+        raise ValueError(f'time_unit: {times.name} is in {given}, which is none of {", ".join(KINDS["time"][1])}; give '
+                         'time_unit="ms" or the like, or the sampling interval in seconds, as step=0.01')
+    if not given and abs(first) > 1e3 * EPOCH:
+        raise ValueError(f'time_unit: {times.name} begins at {first:.15g} without a unit; give time_unit="ms", "us" or "ns"')
     factor = in_si(given or "s")[0]
-    _require((
-        (len(times.values) != len(chosen.values), f"time = {times.name}: has {len(times.values)} entries, {chosen.name} has "
-         f"{len(chosen.values)}; name columns of one length"),
-        (times.doubt and not unit, f'time_unit: {times.doubt}; give it, as time_unit="s" or time_unit="ms", or the sampling '
-         "interval, as step=0.01"),
-        (given and kind_of(given) != "time", f'time_unit: {times.name} is in {given}, which is none of '
-         f'{", ".join(KINDS["time"][1])}; give time_unit="ms" or the like, or the sampling interval in seconds, as step=0.01'),
-        (not given and abs(first) > 1e3 * EPOCH, f"time_unit: {times.name} begins at {first:.15g} without a unit; give "
-         'time_unit="ms", "us" or "ns"')))
     dated, distant = times.kind == "date", abs(first * factor) > EPOCH
     if dated and unit is None or distant:
         begin = numpy.datetime64(int(first), "us") if dated and unit is None else f"{first:.15g} {given or 's'}"
@@ -123,17 +118,18 @@ def kind_of_values(chosen: Column, unit: str | None, differentiate: bool) -> str
     given, declared = chosen.unit if unit is None else unit, kind_of(chosen.unit) or chosen.kind
     kind = kind_of(given) or (declared if unit is None else "")
     moved = kind in ("velocity", "displacement")
-    _require((
-        (unit is not None and kind and declared not in ("", kind), f"unit = {unit}: is one of {kind}, and the file says that "
-         f"{chosen.name} is a {declared}; leave it out"),
-        (moved and not differentiate, f"{chosen.name}: is a {kind}, no force or acceleration; differentiate=True"
-         f"{'' if kind_of(given) else ' with unit='} takes its {'' if kind == 'velocity' else 'second '}derivative, or take the file of the acceleration"),
-        (chosen.kind not in ("", *KINDS), f"{chosen.name}: is a {chosen.kind}, no force or acceleration over time; take "
-         "another file"),
-        (differentiate and not moved, f'differentiate: {chosen.name} is no velocity or displacement; leave it out, or say '
-         'unit="cm/s"'),
-        (differentiate and not kind_of(given), f'unit: the file does not say the unit of the {kind}; give it, as unit="m/s" or '
-         'unit="cm"'),
-        (given and kind == "acceleration" and not is_unit(given), f'unit: {given} is no unit of an acceleration that is known; '
-         'give it, as unit="cm/s^2"')))
+    if unit is not None and kind and declared not in ("", kind):
+        raise ValueError(f"unit = {unit}: is one of {kind}, and the file says that {chosen.name} is a {declared}; leave it out")
+    if moved and not differentiate:
+        way = "differentiate=True" if kind_of(given) else "differentiate=True with unit="
+        raise ValueError(f"{chosen.name}: is a {kind}, no force or acceleration; {way} takes its "
+                         f"{'' if kind == 'velocity' else 'second '}derivative, or take the file of the acceleration")
+    if chosen.kind not in ("", *KINDS):
+        raise ValueError(f"{chosen.name}: is a {chosen.kind}, no force or acceleration over time; take another file")
+    if differentiate and not moved:
+        raise ValueError(f'differentiate: {chosen.name} is no velocity or displacement; leave it out, or say unit="cm/s"')
+    if differentiate and not kind_of(given):
+        raise ValueError(f'unit: the file does not say the unit of the {kind}; give it, as unit="m/s" or unit="cm"')
+    if given and kind == "acceleration" and not is_unit(given):
+        raise ValueError(f'unit: {given} is no unit of an acceleration that is known; give it, as unit="cm/s^2"')
     return kind

@@ -7,7 +7,7 @@ with the peak. Old films (volume 1) have pairs of time [s] and acceleration [g/1
 
 import re
 
-from .reading import KINDS, Column, Format, block, counted, numbers, pairs
+from .reading import KINDS, Column, Format, block, counted, numbers, numeric, pairs
 
 SAMPLES = re.compile(r"\s*(\d+)\s+(?:points of (acc|vel|dis)\w* data equally spaced at\s*([\d.]+)\s*sec"
                      r"|(?:acc)\w* points at\s*([\d.]+)\s*(?:pts|points|samples)/sec)", re.IGNORECASE)
@@ -29,7 +29,7 @@ def _even(lines: list[str], at: int, found: re.Match, name: str, unit: str) -> C
 
 def _pairs(lines: list[str], at: int, count: int, name: str) -> Column:
     """Of the lines of numbers below those of text the last ones, five pairs each."""
-    first = next(n for n in range(at, len(lines)) if block(lines, n))
+    first = next(n for n in range(at, len(lines)) if numeric(lines[n]))
     values = numbers(block(lines, first)[-(-(-count // 5)):], "10F7.3")
     return pairs(name, counted(values, 2 * count), "g/10", "acceleration")
 

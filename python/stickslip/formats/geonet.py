@@ -7,7 +7,7 @@ the integers the 34th to 36th are the numbers of the samples.
 
 import re
 
-from .reading import Column, Format, block, counted, lasting, numbers
+from .reading import Column, Format, block, counted, lasting, numbers, numeric
 
 TITLE = re.compile(r"\s*(un)?corrected accelerogram", re.IGNORECASE)
 POINTS = re.compile(r"^\s*number of points\s+(\d+)\s+duration\s+([\d.]+)", re.IGNORECASE | re.MULTILINE)
@@ -18,7 +18,7 @@ INTEGERS, HEADER, WIDE = 4, 10, 10  # lines of integers, of all numbers of the h
 
 
 def _component(lines: list[str]) -> Column:
-    first = next((n for n in range(len(lines)) if block(lines, n)), len(lines))
+    first = next((n for n in range(len(lines)) if numeric(lines[n])), len(lines))
     found = [pattern.search("\n".join(lines[:first])) for pattern in (POINTS, STEP, COMPONENT)]
     if not all(found):
         raise ValueError(f"component {lines[0].strip()!r}: lacks its number of points, its interval or its direction")

@@ -7,18 +7,19 @@ follow the values.
 
 import re
 
-from .reading import FLAGS, Column, Format, block, counted, kind_in, numbers, pairs
+from .reading import FLAGS, Column, Format, block, counted, kind_in, numbers, numeric, pairs
 
 INTEGERS, NUMBERS, ROW, NONE = 48, 50, 8, 1e38
 UNITS = {"acceleration": "cm/s^2", "velocity": "cm/s", "displacement": "cm"}
 
 
 def _read(lines: list[str]) -> list[Column]:
-    first = next(n for n in range(1, len(lines)) if block(lines, n))
-    header = numbers(block(lines, first))
+    first = next(n for n in range(1, len(lines)) if numeric(lines[n]))
+    described = block(lines, first)
+    header = numbers(described)
     counted(header, INTEGERS + NUMBERS, "the description of the format")
     comments, count, rate = int(header[15]), int(header[16]), header[INTEGERS + 1]
-    at = first + len(block(lines, first)) + comments
+    at = first + len(described) + comments
     if not all(line.startswith("|") for line in lines[at - comments:at]):
         raise ValueError(f"line {at}: {comments} lines of comments with a | are announced")
     values = numbers(lines[at:], "8E10.4")

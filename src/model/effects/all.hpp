@@ -1,5 +1,5 @@
 #pragma once
-/// All effects, each in a file of its own. The first of a list is taken unless another is named.
+/// All effects. The first of a list is taken unless another is named.
 
 #include "stickslip/model/effect.hpp"
 

@@ -1,5 +1,6 @@
 #pragma once
-/// What is gathered until a speed is first passed.
+/// The stationary distribution, and what is gathered over excursions and until a speed is first
+/// passed.
 
 #include <cstddef>
 #include <optional>
