@@ -19,123 +19,121 @@ namespace stickslip::cli {
 namespace {
 
 using cases::SolutionMethod;
+using OrderedJson = nlohmann::ordered_json;
 
-std::string escaped(char c) {
-  static const std::map<char, std::string> escapes{{'\\', "\\e"},  {'-', "\\-"},   {'^', "\\(ha"},
-                                                   {'~', "\\(ti"}, {'`', "\\(ga"}, {'\'', "\\(aq"}};
-  const auto found = escapes.find(c);
-  return found == escapes.end() ? std::string(1, c) : found->second;
-}
+/// What pages list: a name, the form of what stands behind it, if any, and what it is.
+struct Item {
+  std::string name, form, meaning;
+};
 
-std::string paragraph(std::string_view text) { return fmt::format(".PP\n{}\n", roff(text)); }
+/// Items under a title.
+struct Part {
+  std::string title, explanation;
+  std::vector<Item> items;
+};
 
-std::string section(std::string_view title, const std::string& body) {
-  return fmt::format(".SH {}\n{}", title, body);
-}
-
-// An entry of a list; `head` is roff already.
-std::string entry(const std::string& head, const std::string& body) {
-  return fmt::format(".TP\n{}\n{}\n", head, roff(body));
-}
-
-std::string bold(std::string_view text) { return fmt::format("\\fB{}\\fR", roff(text)); }
-
-std::string bold_entry(const std::string& name, const std::string& meaning) {
-  return entry(bold(name), meaning);
-}
-
-std::string italic_entry(const std::string& name, const std::string& meaning) {
-  return entry(fmt::format("\\fI{}\\fR", name), meaning);
-}
-
-// A list of names and their meanings, each as `write` has it.
+// A list of names and their meanings.
 template <class List>
-std::string entries(const List& rows,
-                    std::string (*write)(const std::string& name, const std::string& meaning)) {
-  std::string text;
+std::vector<Item> items_of(const List& rows) {
+  std::vector<Item> items;
   for (const auto& [name, meaning] : rows) {
-    text += write(fmt::format("{}", name), fmt::format("{}.", meaning));
+    items.push_back({fmt::format("{}", name), "", fmt::format("{}.", meaning)});
   }
+  return items;
+}
+
+// Each as `write` has it, one after the other.
+template <class Write>
+std::string joined(const std::vector<Item>& items, const Write& write) {
+  std::string text;
+  for (const auto& item : items) text += write(item);
   return text;
 }
 
-using Rows = std::vector<std::pair<std::string, std::string>>;
-
 // Quantities with their titles and the keys that they write, those of other quantities that come
 // with them included.
-Rows quantities_with_keys() {
-  Rows rows;
+std::vector<Item> quantities_with_keys() {
+  std::vector<Item> items;
   for (const auto* quantity : cases::entries()) {
     auto keys = split(quantity->others, ',');
     std::transform(quantity->rows.begin(), quantity->rows.end(), std::inserter(keys, keys.begin()),
                    [](const cases::Row* row) { return std::string(row->key); });
-    rows.emplace_back(quantity->word, fmt::format("{}{}{}", quantity->title,
-                                                  keys.empty() ? "" : ": ", fmt::join(keys, ", ")));
+    items.push_back(
+        {std::string(quantity->word), "",
+         fmt::format("{}{}{}.", quantity->title, keys.empty() ? "" : ": ", fmt::join(keys, ", "))});
   }
-  return rows;
+  return items;
 }
 
-Rows other_rows() {
-  Rows rows;
-  for (const auto& other : other_options()) rows.emplace_back(other.name, other.sentence);
-  return rows;
+bool has_range(const Option& option) {
+  return option.kind == Kind::real || option.kind == Kind::integer || option.kind == Kind::numbers;
 }
 
-// The form, with the range or the words allowed; nothing for a file, of which the sentence speaks.
-std::string short_requirement(const Option& option) {
-  std::string words = enumerate(option.words, "or");
-  switch (option.kind) {
-  case Kind::real:
-  case Kind::integer:
-  case Kind::numbers:
-    return fmt::format("{} in {}{}{}", option.form, option.range.text(),
-                       words.empty() ? "" : " or ", words);
-  case Kind::choice:
-  case Kind::flag: return words;
-  case Kind::path:
-  case Kind::input: return "";
-  default: return "form " + option.form;
-  }
-}
-
-// What it does, with its unit, default and range.
+// What it does, with its unit, the range or the words allowed, and its default; of a file the
+// sentence speaks.
 std::string description(const Option& option) {
+  const std::string words = enumerate(option.words, "or");
+  const bool file = option.kind == Kind::path || option.kind == Kind::input;
+  const bool of_words = option.kind == Kind::choice || option.kind == Kind::flag;
   std::string text = option.sentence;
   if (!option.unit.empty()) text += fmt::format(" [{}]", option.unit);
-  const std::string must = short_requirement(option);
-  if (!must.empty()) text += "; " + must;
+  if (has_range(option)) {
+    text += fmt::format("; {} in {}{}{}", option.form, option.range.text(),
+                        words.empty() ? "" : " or ", words);
+  } else if (!file) {
+    text += "; " + (of_words ? words : "form " + option.form);
+  }
   if (!option.initial.empty()) text += "; default " + option.initial;
   return text + ".";
 }
 
-// "-sweep_mu_s, -sweep_mu_d, ..." of a group; empty if it has none.
-std::string swept_names(const Group& group) {
+// The options that sweep others.
+std::vector<std::string> swept_names(const Group& group) {
   std::vector<std::string> names;
   for (const auto& option : group.options) {
     if (swept_by(option) != nullptr) names.push_back("-" + option.name);
   }
-  return fmt::format("{}", fmt::join(names, ", "));
+  return names;
 }
 
-constexpr const char* kSweptHelp =
-    "values of the option of the same name; numbers in its unit and range.";
-
-std::string option_items() {
-  std::string text;
+// All options by group, and what stands outside the table. Those that sweep others are one item.
+std::vector<Part> option_parts() {
+  std::vector<Part> parts;
   for (const auto& group : table()) {
-    text += fmt::format(".SS {}\n{}\n", roff(group.title), roff(group.explanation + "."));
-    const std::string swept = swept_names(group);
-    if (!swept.empty()) text += entry(bold(swept) + " \\fInumbers\\fR", kSweptHelp);
+    auto& part = parts.emplace_back(Part{group.title, group.explanation + ".", {}});
+    const auto swept = swept_names(group);
+    if (!swept.empty()) {
+      part.items.push_back({fmt::format("{}", fmt::join(swept, ", ")), "numbers",
+                            "values of the option of the same name; numbers in its unit and "
+                            "range."});
+    }
     for (const auto& option : group.options) {
       if (swept_by(option) != nullptr) continue;
-      text += entry(fmt::format("{} \\fI{}\\fR", bold("-" + option.name), option.form),
-                    description(option));
+      part.items.push_back({"-" + option.name, option.form, description(option)});
     }
   }
-  return text + ".SS Other\n" + entries(other_rows(), bold_entry);
+  auto& other = parts.emplace_back(Part{"Other", "", {}});
+  for (const auto& row : other_options()) other.items.push_back({row.name, "", row.sentence + "."});
+  return parts;
 }
 
-constexpr const char* kSynopsis = R"(.B stickslip
+// An entry of a list in roff, its name in the font B or I.
+std::string roff_item(char font, const Item& item) {
+  const std::string form = item.form.empty() ? "" : fmt::format(" \\fI{}\\fR", item.form);
+  return fmt::format(".TP\n\\f{}{}\\fR{}\n{}\n", font, roff(item.name), form, roff(item.meaning));
+}
+std::string bold_item(const Item& item) { return roff_item('B', item); }
+std::string italic_item(const Item& item) { return roff_item('I', item); }
+
+std::string roff_part(const Part& part) {
+  const std::string explained = part.explanation.empty() ? "" : roff(part.explanation) + "\n";
+  return fmt::format(".SS {}\n{}{}", roff(part.title), explained, joined(part.items, bold_item));
+}
+
+constexpr const char* kManualHead = R"(.SH NAME
+stickslip, stickslip\-complex \- dry friction under random forcing
+.SH SYNOPSIS
+.B stickslip
 .RI [\fB\-options_file\fR " file" ]
 .RI [\fB\-\fIname " value" " ...]"
 .br
@@ -143,18 +141,16 @@ constexpr const char* kSynopsis = R"(.B stickslip
 .I ranks
 .B stickslip
 .RI [\fB\-\fIname " value" " ...]"
+.SH DESCRIPTION
+.PP
+A body of unit mass slides on a rough floor, pushed by a random force X with a finite
+correlation time. The program computes the stationary distribution of the force and the
+velocity, spectra, durations and more of this piecewise deterministic Markov process, each
+number with an estimate of its error. A table goes to standard output.
+.PP
+Every choice is a PETSc option, on the command line or in an options file; the last one given
+counts. stickslip\-complex is the same program with complex scalars.
 )";
-
-std::string introduction() {
-  return paragraph("A body of unit mass slides on a rough floor, pushed by a random force X with a "
-                   "finite correlation time. The program computes the stationary distribution of "
-                   "the force and the velocity, spectra, durations and more of this piecewise "
-                   "deterministic Markov process, each number with an estimate of its error. A "
-                   "table goes to standard output.") +
-         paragraph(
-             "Every choice is a PETSc option, on the command line or in an options file; the last "
-             "one given counts. stickslip-complex is the same program with complex scalars.");
-}
 
 // Command lines and what they do.
 constexpr std::pair<const char*, const char*> kExamples[] = {
@@ -169,11 +165,10 @@ constexpr std::pair<const char*, const char*> kExamples[] = {
      "Ten coefficients of friction on four ranks; run again, it resumes"},
 };
 
-// Names in roff.
 constexpr std::pair<const char*, const char*> kFiles[] = {
     {"PREFIX/share/stickslip/options", "Options files to start from"},
     {"PREFIX/share/doc/stickslip", "Tutorial, method, format of the output, and other pages"},
-    {"PREFIX/lib/python3/dist\\-packages/stickslip",
+    {"PREFIX/lib/python3/dist-packages/stickslip",
      "Python package that runs the program and draws what was computed"}};
 
 constexpr const char* kCompletionHead =
@@ -221,145 +216,25 @@ std::string completer(const Option& option) {
 }
 
 // A name and, in a column of its own, what it is; below the name if that is too long.
-std::string help_entry(const std::string& name, const std::string& meaning) {
+std::string help_item(const Item& item, std::size_t margin) {
   constexpr std::size_t column = 21, width = 76;
-  const bool beside = name.size() + 3 <= column;
-  const std::string gap =
-      beside ? std::string(column - 2 - name.size(), ' ') : "\n" + std::string(column, ' ');
-  return fmt::format("  {}{}{}\n", name, gap, wrap(meaning, width, column));
+  const std::size_t name = margin + item.name.size();
+  return fmt::format("{:{}}{}{}{:{}}{}\n", "", margin, wrap(item.name, 94, 2),
+                     name < column ? "" : "\n", "", name < column ? column - name : column,
+                     wrap(item.meaning, width, column));
 }
 
-std::string group_help(const Group& group) {
-  std::string text = fmt::format("\n{}. {}.\n", group.title, wrap(group.explanation, 88, 2));
-  const std::string swept = swept_names(group);
-  if (!swept.empty()) text += help_entry(wrap(swept, 94, 2), kSweptHelp);
-  for (const auto& option : group.options) {
-    if (swept_by(option) != nullptr) continue;
-    text += help_entry("-" + option.name, description(option));
-    if (option.name == "quantities") {
-      text +=
-          entries(quantities_with_keys(), [](const std::string& word, const std::string& meaning) {
-            return help_entry("  " + word, meaning);
-          });
-    }
-  }
-  return text;
+std::string option_item(const Item& item) {
+  const auto inner = [](const Item& quantity) { return help_item(quantity, 4); };
+  const bool list = item.name == "-quantities";
+  return help_item(item, 2) + (list ? joined(quantities_with_keys(), inner) : "");
 }
 
-std::string other_help() {
-  std::string meanings;
-  for (const auto& [status, meaning] : kExitMeanings) {
-    meanings += fmt::format("{}{} {}", meanings.empty() ? "" : "; ", status, meaning);
-  }
-  return fmt::format("\nOther:\n{}\n{}.\n", entries(other_rows(), help_entry),
-                     wrap("Exit status: " + meanings, 88, 0));
-}
-
-}  // namespace
-
-std::span<const std::pair<const char*, const char*>> forms() {
-  static constexpr std::pair<const char*, const char*> all[] = {
-      {"number", "a decimal number such as 0.25 or 1e-3"},
-      {"integer", "a whole number"},
-      {"word", "one of the words allowed"},
-      {"list", "words separated by commas, without blanks, each at most once"},
-      {"numbers",
-       "a list a,b,c, or first:last:count for count >= 2 evenly spaced numbers from first to last, "
-       "both included, or first:last:count:log for numbers evenly spaced in the logarithm"},
-      {"flag", "yes or no; the option alone means yes"},
-      {"file", "the name of a file"},
-      {"formula", "a formula in v, mu_s, mu_d and tau; a value that begins with a minus sign needs "
-                  "a blank before it in an options file"},
-      {"functions",
-       "functions of the state, separated by semicolons: 1, x, v, v^2, |v|, stick, slide, "
-       "|x|<=mu_s, or formulas in x, y, v, mu_s and mu_d such as \"x*v; abs(v) > 0.5\", with y = "
-       "sign(v), 0 at rest"},
-      {"state", "s+ or s-, where a sliding phase starts; x,v with x a noise level; rest, V = 0 and "
-                "X in its stationary distribution; stationary, the stationary distribution"}};
-  return all;
-}
-
-std::string help_text() {
-  std::string text =
-      "stickslip: dry friction under random forcing, to the digits you ask for\n\n"
-      "  stickslip -options_file scene.opts [-name value ...]\n\n"
-      "Every choice is a PETSc option, on the line or in an options file; the last one given "
-      "counts.\n"
-      "\nForms of values:\n" +
-      entries(forms(), help_entry);
-  for (const auto& group : table()) text += group_help(group);
-  return text + other_help();
-}
-
-std::string roff(std::string_view text) {
-  const bool command = !text.empty() && (text.front() == '.' || text.front() == '\'');
-  std::string line = command ? "\\&" : "";
-  for (const char c : text) line += escaped(c);
-  return line;
-}
-
-std::string man_page(std::string_view version) {
-  return fmt::format(".\\\" Generated by `stickslip \\-man_page` from the table of options.\n"
-                     ".TH STICKSLIP 1 \"\" \"stickslip {}\" \"User Commands\"\n.nh\n.ad l\n",
-                     roff(version)) +
-         section("NAME", roff("stickslip, stickslip-complex") + " \\- " +
-                             roff("dry friction under random forcing") + "\n") +
-         section("SYNOPSIS", kSynopsis) + section("DESCRIPTION", introduction()) +
-         section("VALUES", entries(forms(), italic_entry)) + section("OPTIONS", option_items()) +
-         section("QUANTITIES", entries(quantities_with_keys(), bold_entry)) +
-         section("EXIT STATUS", entries(kExitMeanings, bold_entry)) +
-         section("EXAMPLES", entries(kExamples, bold_entry)) +
-         section("FILES", entries(kFiles, italic_entry)) +
-         section("SEE ALSO", "\\fBmpiexec\\fR(1)\n");
-}
-
-std::string completion() {
-  std::string text = kCompletionHead;
-  text += fmt::format("  local names='{}'\n", fmt::join(all_names(), " "));
-  text += "  COMPREPLY=()\n  case ${COMP_WORDS[COMP_CWORD - 1]} in\n";
-  text += "    -options_file | -cases) _stickslip_files ;;\n";
-  for (const auto& option : all_options()) {
-    text += fmt::format("    -{}) {};;\n", option.name, completer(option));
-  }
-  return text + kCompletionEnd;
-}
-
-namespace {
-
-using OrderedJson = nlohmann::ordered_json;
-
-// What each word of a choice of effects means; {} for any other option.
-OrderedJson meanings_of(const Option& option) {
-  OrderedJson meanings = OrderedJson::object();
-  for (const auto* choice : effects::choices()) {
-    if (choice->option != option.name) continue;
-    for (const auto* effect : choice->effects) {
-      meanings[std::string(effect->word)] = effect->sentence;
-    }
-  }
-  return meanings;
-}
-
-OrderedJson owners_of(const Option& option) {
-  OrderedJson owners = OrderedJson::object();
-  for (const auto* choice : effects::choices()) {
-    for (const auto* effect : choice->effects) {
-      if (effect->knows(option.name)) owners[std::string(choice->option)].push_back(effect->word);
-    }
-  }
-  return owners;
-}
-
-// Whether words cannot do without the option.
-bool is_needed(const Option& option) {
-  for (const auto* choice : effects::choices()) {
-    for (const auto* effect : choice->effects) {
-      for (const auto& parameter : effect->parameters) {
-        if (parameter.option.name == option.name && !parameter.example.empty()) return true;
-      }
-    }
-  }
-  return false;
+std::string help_part(const Part& part) {
+  const std::string title = part.explanation.empty()
+                                ? part.title + ":"
+                                : part.title + ". " + wrap(part.explanation, 88, 2);
+  return "\n" + title + "\n" + joined(part.items, option_item);
 }
 
 OrderedJson json_of(const std::optional<effects::Slider>& slider) {
@@ -371,22 +246,24 @@ OrderedJson json_of(const std::optional<effects::Slider>& slider) {
 }
 
 OrderedJson json_of(const Option& option, const Group& group) {
-  const bool ranged =
-      option.kind == Kind::real || option.kind == Kind::integer || option.kind == Kind::numbers;
-  return {{"name", option.name},
-          {"group", group.title},
-          {"form", option.form},
-          {"unit", option.unit},
-          {"default", option.initial},
-          {"range", ranged ? option.range.text() : ""},
-          {"words", option.words},
-          {"meanings", meanings_of(option)},
-          {"sentence", option.sentence},
-          {"symbol", option.shown.symbol},
-          {"label", option.shown.label},
-          {"slider", json_of(option.shown.slider)},
-          {"belongs_to", owners_of(option)},
-          {"needed", is_needed(option)}};
+  OrderedJson meanings = OrderedJson::object(), owners = OrderedJson::object();
+  bool needed = false;  // whether words of a choice cannot do without the option
+  for (const auto* choice : effects::choices()) {
+    for (const auto* effect : choice->effects) {
+      if (choice->option == option.name) meanings[std::string(effect->word)] = effect->sentence;
+      if (effect->knows(option.name)) owners[std::string(choice->option)].push_back(effect->word);
+      needed |= std::ranges::any_of(effect->parameters, [&](const auto& parameter) {
+        return parameter.option.name == option.name && !parameter.example.empty();
+      });
+    }
+  }
+  return {{"name", option.name},         {"group", group.title},
+          {"form", option.form},         {"unit", option.unit},
+          {"default", option.initial},   {"range", has_range(option) ? option.range.text() : ""},
+          {"words", option.words},       {"meanings", meanings},
+          {"sentence", option.sentence}, {"symbol", option.shown.symbol},
+          {"label", option.shown.label}, {"slider", json_of(option.shown.slider)},
+          {"belongs_to", owners},        {"needed", needed}};
 }
 
 // The keys of its results, each with the option that it is an array over; "" for a scalar.
@@ -395,20 +272,6 @@ OrderedJson json_of(const cases::Entry& quantity) {
   for (const auto* row : quantity.rows) keys[std::string(row->key)] = row->abscissa;
   return {{"word", quantity.word}, {"keys", keys}};
 }
-
-}  // namespace
-
-std::string reference_json() {
-  OrderedJson options = OrderedJson::array();
-  for (const auto& group : table()) {
-    for (const auto& option : group.options) options.push_back(json_of(option, group));
-  }
-  OrderedJson quantities = OrderedJson::array();
-  for (const auto* quantity : cases::entries()) quantities.push_back(json_of(*quantity));
-  return OrderedJson{{"options", options}, {"quantities", quantities}}.dump(1) + "\n";
-}
-
-namespace {
 
 constexpr std::size_t kWidth = 110;
 
@@ -449,11 +312,9 @@ std::string option_rows(const Group& group) {
 
 // The options that sweep others, as one sentence; empty if the group has none.
 std::string swept_options(const Group& group) {
-  std::vector<std::string> names;
-  for (const auto& option : group.options) {
-    if (swept_by(option) != nullptr) names.push_back(code("-" + option.name));
-  }
+  auto names = swept_names(group);
   if (names.empty()) return "";
+  std::ranges::transform(names, names.begin(), [](const auto& name) { return code(name); });
   return wrap(fmt::format("{} have the form numbers: values of the option of the same name, in its "
                           "unit and range.",
                           enumerate(names, "and")),
@@ -518,6 +379,91 @@ std::string result_rows() {
 }
 
 }  // namespace
+
+std::span<const std::pair<const char*, const char*>> forms() {
+  static constexpr std::pair<const char*, const char*> all[] = {
+      {"number", "a decimal number such as 0.25 or 1e-3"},
+      {"integer", "a whole number"},
+      {"word", "one of the words allowed"},
+      {"list", "words separated by commas, without blanks, each at most once"},
+      {"numbers",
+       "a list a,b,c, or first:last:count for count >= 2 evenly spaced numbers from first to last, "
+       "both included, or first:last:count:log for numbers evenly spaced in the logarithm"},
+      {"flag", "yes or no; the option alone means yes"},
+      {"file", "the name of a file"},
+      {"formula", "a formula in v, mu_s, mu_d and tau; a value that begins with a minus sign needs "
+                  "a blank before it in an options file"},
+      {"functions",
+       "functions of the state, separated by semicolons: 1, x, v, v^2, |v|, stick, slide, "
+       "|x|<=mu_s, or formulas in x, y, v, mu_s and mu_d such as \"x*v; abs(v) > 0.5\", with y = "
+       "sign(v), 0 at rest"},
+      {"state", "s+ or s-, where a sliding phase starts; x,v with x a noise level; rest, V = 0 and "
+                "X in its stationary distribution; stationary, the stationary distribution"}};
+  return all;
+}
+
+std::string help_text() {
+  std::string text =
+      "stickslip: dry friction under random forcing, to the digits you ask for\n\n"
+      "  stickslip -options_file scene.opts [-name value ...]\n\n"
+      "Every choice is a PETSc option, on the line or in an options file; the last one given "
+      "counts.\n" +
+      help_part({"Forms of values", "", items_of(forms())});
+  for (const auto& part : option_parts()) text += help_part(part);
+  std::string status = "Exit status: ";
+  for (const auto& [number, meaning] : kExitMeanings) {
+    status += fmt::format("{}{} {}", number == kExitMeanings[0].first ? "" : "; ", number, meaning);
+  }
+  return text + "\n" + wrap(status, 88, 0) + ".\n";
+}
+
+std::string roff(std::string_view text) {
+  static const std::map<char, std::string> escapes{{'\\', "\\e"},  {'-', "\\-"},   {'^', "\\(ha"},
+                                                   {'~', "\\(ti"}, {'`', "\\(ga"}, {'\'', "\\(aq"}};
+  const bool command = !text.empty() && (text.front() == '.' || text.front() == '\'');
+  std::string line = command ? "\\&" : "";
+  for (const char c : text) {
+    const auto found = escapes.find(c);
+    line += found == escapes.end() ? std::string(1, c) : found->second;
+  }
+  return line;
+}
+
+std::string man_page(std::string_view version) {
+  std::string text =
+      fmt::format(".\\\" Generated by `stickslip \\-man_page` from the table of options.\n"
+                  ".TH STICKSLIP 1 \"\" \"stickslip {}\" \"User Commands\"\n.nh\n.ad l\n{}"
+                  ".SH VALUES\n{}.SH OPTIONS\n",
+                  roff(version), kManualHead, joined(items_of(forms()), italic_item));
+  for (const auto& part : option_parts()) text += roff_part(part);
+  return text + fmt::format(".SH QUANTITIES\n{}.SH EXIT STATUS\n{}.SH EXAMPLES\n{}.SH FILES\n{}"
+                            ".SH SEE ALSO\n\\fBmpiexec\\fR(1)\n",
+                            joined(quantities_with_keys(), bold_item),
+                            joined(items_of(kExitMeanings), bold_item),
+                            joined(items_of(kExamples), bold_item),
+                            joined(items_of(kFiles), italic_item));
+}
+
+std::string completion() {
+  std::string text = kCompletionHead;
+  text += fmt::format("  local names='{}'\n", fmt::join(all_names(), " "));
+  text += "  COMPREPLY=()\n  case ${COMP_WORDS[COMP_CWORD - 1]} in\n";
+  text += "    -options_file | -cases) _stickslip_files ;;\n";
+  for (const auto& option : all_options()) {
+    text += fmt::format("    -{}) {};;\n", option.name, completer(option));
+  }
+  return text + kCompletionEnd;
+}
+
+std::string reference_json() {
+  OrderedJson options = OrderedJson::array();
+  for (const auto& group : table()) {
+    for (const auto& option : group.options) options.push_back(json_of(option, group));
+  }
+  OrderedJson quantities = OrderedJson::array();
+  for (const auto* quantity : cases::entries()) quantities.push_back(json_of(*quantity));
+  return OrderedJson{{"options", options}, {"quantities", quantities}}.dump(1) + "\n";
+}
 
 std::string reference_page() {
   std::string text =

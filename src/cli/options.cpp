@@ -66,62 +66,6 @@ std::string apart(const std::string& name, std::size_t sign) {
                      after.empty() ? "value" : after);
 }
 
-}  // namespace
-
-std::span<const Synonyms> all_synonyms() {
-  static const auto all = [] {
-    std::vector<Synonyms> rows;
-    const auto add = [&rows](std::string_view option, std::string_view word,
-                             const std::vector<std::string>& others, const std::string& page = "") {
-      if (!others.empty()) rows.push_back({std::string(option), std::string(word), others, page});
-    };
-    const auto add_words = [&add](std::string_view option, const auto& words) {
-      for (const auto& each : words) add(option, each.word, split(each.synonyms, ','));
-    };
-    for (const auto& option : all_options()) {
-      add(option.name, "", option.shown.others, option.shown.page);
-    }
-    for (const auto& other : other_options()) {
-      add(other.name.substr(1), "", split(other.synonyms, ','));
-    }
-    for (const auto* choice : effects::choices()) {
-      for (const auto* effect : choice->effects) {
-        add(choice->option, effect->word, effect->others);
-        add(choice->option, effect->word, effect->explained, effect->page);
-      }
-    }
-    for (const auto* entry : cases::entries()) {
-      add("quantities", entry->word, split(entry->synonyms, ','));
-    }
-    add_words("route", cases::solution_methods());
-    add_words("scheme", kSchemes);
-    return rows;
-  }();
-  return all;
-}
-
-std::string suggestion_for_option(const std::string& name) {
-  if (const auto sign = name.find('='); sign != name.npos) return apart(name, sign);
-  const std::string meant = meant_option(name);
-  if (meant.empty()) return "-help lists all";
-  return suggested(meant, synonyms_of(name, ""));
-}
-
-std::string suggestion_for_word(const Option& option, const std::string& word) {
-  const std::string meant = meant_word(option, word);
-  if (meant.empty()) return "";
-  return suggested(meant, synonyms_of(word, option.name));
-}
-
-std::string meant_word(const Option& option, const std::string& word) {
-  if (const Synonyms* row = synonyms_of(word, option.name)) return row->word;
-  const auto* quantity = option.name == "quantities" ? cases::entry_of(word) : nullptr;
-  if (quantity != nullptr) return std::string(quantity->word);
-  return nearest_word(word, option.words);
-}
-
-namespace {
-
 constexpr std::string_view kSweeps = "sweep_";
 
 using Words = std::vector<std::string>;
@@ -321,7 +265,139 @@ std::vector<Option> output_options() {
   return options;
 }
 
+void check_words(const Option& option, const std::string& value, Problems& problems) {
+  const auto given = option.kind == Kind::list ? split(value, ',')
+                     : option.adds             ? split(value, '+')
+                                               : std::vector{value};
+  const std::string must = "must be " + requirement(option);
+  if (given.empty()) problems.add(option, value, must, "");
+  for (auto word = given.begin(); word != given.end(); ++word) {
+    if (std::count(option.words.begin(), option.words.end(), *word) == 0) {
+      problems.add(option, *word, must, suggestion_for_word(option, *word));
+    }
+    if (std::find(given.begin(), word, *word) != word) {
+      problems.add(option, value, "names " + *word + " twice", "name it once");
+    }
+  }
+}
+
+// What to write in the place of a number with a unit, a per cent sign or a decimal comma; else the
+// fix given.
+std::string written_plainly(const std::string& value, bool is_list, const std::string& fix) {
+  char* behind = nullptr;
+  const double number = std::strtod(value.c_str(), &behind);
+  if (behind == value.c_str()) return fix;
+  if (*behind == '%') return fmt::format("write {:g} for {:g} %", number / 100, number);
+  if (*behind == ',' && !is_list) return "write the number with a decimal point; " + fix;
+  if (std::isalpha(static_cast<unsigned char>(*behind)) == 0) return fix;
+  return "write the number alone: units are yours, such as m/s^2 for all forces and s for all "
+         "times";
+}
+
+void check_numbers(const Option& option, const std::string& value, Problems& problems) {
+  const std::string must = "must be " + requirement(option);
+  const auto numbers = parse_numbers(value);
+  if (!numbers) {
+    const char* example = "write for example 0.1,1 or 0.01:10:31:log";
+    return problems.add(option, value, must, written_plainly(value, true, example));
+  }
+  const auto bad = std::find_if(numbers->begin(), numbers->end(),
+                                [&option](double v) { return !option.range.contains(v); });
+  if (bad != numbers->end()) problems.add(option, fmt::format("{:g}", *bad), must, option.fix);
+}
+
+void check_number(const Option& option, const std::string& value, Problems& problems) {
+  const bool is_word = std::count(option.words.begin(), option.words.end(), value) > 0;
+  const auto number = parse_number(value);
+  const bool fits = number && option.range.contains(*number) &&
+                    (option.kind == Kind::real || *number == std::floor(*number));
+  if (is_word || fits) return;
+  const bool several = !number && parse_numbers(value) && find("sweep_" + option.name) != nullptr;
+  const std::string fix =
+      several ? fmt::format("-sweep_{} {} takes several values", option.name, value) : option.fix;
+  problems.add(option, value, "must be " + requirement(option),
+               number ? option.fix : written_plainly(value, false, fix));
+}
+
+void check_value(const Option& option, const std::string& value, Problems& problems) {
+  if (value == "=") {
+    return problems.add(option, value, "is no value",
+                        "write -" + option.name + " value, without =");
+  }
+  const bool is_list = option.kind == Kind::list || option.kind == Kind::numbers;
+  if (is_list && value.ends_with(',')) {
+    return problems.add(option, value, "ends with a comma", "lists have no spaces, as in a,b");
+  }
+  switch (option.kind) {
+  case Kind::real:
+  case Kind::integer: return check_number(option, value, problems);
+  case Kind::choice:
+  case Kind::list: return check_words(option, value, problems);
+  case Kind::numbers: return check_numbers(option, value, problems);
+  case Kind::text: return;
+  case Kind::flag:
+    if (!value.empty()) check_words(option, value, problems);
+    return;
+  case Kind::path:
+  case Kind::input:
+    if (!value.empty()) return;
+    problems.add(option, value, "must be " + requirement(option), "name the file after the option");
+  }
+}
+
 }  // namespace
+
+std::span<const Synonyms> all_synonyms() {
+  static const auto all = [] {
+    std::vector<Synonyms> rows;
+    const auto add = [&rows](std::string_view option, std::string_view word,
+                             const std::vector<std::string>& others, const std::string& page = "") {
+      if (!others.empty()) rows.push_back({std::string(option), std::string(word), others, page});
+    };
+    const auto add_words = [&add](std::string_view option, const auto& words) {
+      for (const auto& each : words) add(option, each.word, split(each.synonyms, ','));
+    };
+    for (const auto& option : all_options()) {
+      add(option.name, "", option.shown.others, option.shown.page);
+    }
+    for (const auto& other : other_options()) {
+      add(other.name.substr(1), "", split(other.synonyms, ','));
+    }
+    for (const auto* choice : effects::choices()) {
+      for (const auto* effect : choice->effects) {
+        add(choice->option, effect->word, effect->others);
+        add(choice->option, effect->word, effect->explained, effect->page);
+      }
+    }
+    for (const auto* entry : cases::entries()) {
+      add("quantities", entry->word, split(entry->synonyms, ','));
+    }
+    add_words("route", cases::solution_methods());
+    add_words("scheme", kSchemes);
+    return rows;
+  }();
+  return all;
+}
+
+std::string suggestion_for_option(const std::string& name) {
+  if (const auto sign = name.find('='); sign != name.npos) return apart(name, sign);
+  const std::string meant = meant_option(name);
+  if (meant.empty()) return "-help lists all";
+  return suggested(meant, synonyms_of(name, ""));
+}
+
+std::string suggestion_for_word(const Option& option, const std::string& word) {
+  const std::string meant = meant_word(option, word);
+  if (meant.empty()) return "";
+  return suggested(meant, synonyms_of(word, option.name));
+}
+
+std::string meant_word(const Option& option, const std::string& word) {
+  if (const Synonyms* row = synonyms_of(word, option.name)) return row->word;
+  const auto* quantity = option.name == "quantities" ? cases::entry_of(word) : nullptr;
+  if (quantity != nullptr) return std::string(quantity->word);
+  return nearest_word(word, option.words);
+}
 
 std::string requirement(const Option& option) {
   std::string words = enumerate(option.words, "or");
@@ -433,90 +509,6 @@ std::vector<std::string> all_names() {
   for (const auto& option : all_options()) names.push_back("-" + option.name);
   return names;
 }
-
-namespace {
-
-void check_words(const Option& option, const std::string& value, Problems& problems) {
-  const auto given = option.kind == Kind::list ? split(value, ',')
-                     : option.adds             ? split(value, '+')
-                                               : std::vector{value};
-  const std::string must = "must be " + requirement(option);
-  if (given.empty()) problems.add(option, value, must, "");
-  for (auto word = given.begin(); word != given.end(); ++word) {
-    if (std::count(option.words.begin(), option.words.end(), *word) == 0) {
-      problems.add(option, *word, must, suggestion_for_word(option, *word));
-    }
-    if (std::find(given.begin(), word, *word) != word) {
-      problems.add(option, value, "names " + *word + " twice", "name it once");
-    }
-  }
-}
-
-// What to write in the place of a number with a unit, a per cent sign or a decimal comma; else the
-// fix given.
-std::string written_plainly(const std::string& value, bool is_list, const std::string& fix) {
-  char* behind = nullptr;
-  const double number = std::strtod(value.c_str(), &behind);
-  if (behind == value.c_str()) return fix;
-  if (*behind == '%') return fmt::format("write {:g} for {:g} %", number / 100, number);
-  if (*behind == ',' && !is_list) return "write the number with a decimal point; " + fix;
-  if (std::isalpha(static_cast<unsigned char>(*behind)) == 0) return fix;
-  return "write the number alone: units are yours, such as m/s^2 for all forces and s for all "
-         "times";
-}
-
-void check_numbers(const Option& option, const std::string& value, Problems& problems) {
-  const std::string must = "must be " + requirement(option);
-  const auto numbers = parse_numbers(value);
-  if (!numbers) {
-    const char* example = "write for example 0.1,1 or 0.01:10:31:log";
-    return problems.add(option, value, must, written_plainly(value, true, example));
-  }
-  const auto bad = std::find_if(numbers->begin(), numbers->end(),
-                                [&option](double v) { return !option.range.contains(v); });
-  if (bad != numbers->end()) problems.add(option, fmt::format("{:g}", *bad), must, option.fix);
-}
-
-void check_number(const Option& option, const std::string& value, Problems& problems) {
-  const bool is_word = std::count(option.words.begin(), option.words.end(), value) > 0;
-  const auto number = parse_number(value);
-  const bool fits = number && option.range.contains(*number) &&
-                    (option.kind == Kind::real || *number == std::floor(*number));
-  if (is_word || fits) return;
-  const bool several = !number && parse_numbers(value) && find("sweep_" + option.name) != nullptr;
-  const std::string fix =
-      several ? fmt::format("-sweep_{} {} takes several values", option.name, value) : option.fix;
-  problems.add(option, value, "must be " + requirement(option),
-               number ? option.fix : written_plainly(value, false, fix));
-}
-
-void check_value(const Option& option, const std::string& value, Problems& problems) {
-  if (value == "=") {
-    return problems.add(option, value, "is no value",
-                        "write -" + option.name + " value, without =");
-  }
-  const bool is_list = option.kind == Kind::list || option.kind == Kind::numbers;
-  if (is_list && value.ends_with(',')) {
-    return problems.add(option, value, "ends with a comma", "lists have no spaces, as in a,b");
-  }
-  switch (option.kind) {
-  case Kind::real:
-  case Kind::integer: return check_number(option, value, problems);
-  case Kind::choice:
-  case Kind::list: return check_words(option, value, problems);
-  case Kind::numbers: return check_numbers(option, value, problems);
-  case Kind::text: return;
-  case Kind::flag:
-    if (!value.empty()) check_words(option, value, problems);
-    return;
-  case Kind::path:
-  case Kind::input:
-    if (!value.empty()) return;
-    problems.add(option, value, "must be " + requirement(option), "name the file after the option");
-  }
-}
-
-}  // namespace
 
 void Problems::add(const Option& option, const std::string& value, const std::string& why,
                    const std::string& fix) {

@@ -34,6 +34,7 @@
 #include "stickslip/run/carry_out.hpp"
 
 namespace stickslip::cli {
+namespace {
 
 // Many cases in one process, each with a command line of its own.
 
@@ -49,15 +50,6 @@ using Emit = std::function<void(Report, const Request&)>;
 
 /// Runs what the words of a command line and PETSc's options ask for, under a started PETSc.
 using Run = std::function<Ending(const std::vector<std::string>& words, const Emit&)>;
-
-/// Runs a case for each line of a file, or of standard input for "-", one after the other: its
-/// options are the words `common` and those of the line. Each is answered on standard output by a
-/// line of JSON: its exit status, and what -summary writes or what went wrong. A case that fails
-/// leaves the others alone. Returns the largest status. Not for several ranks. Throws BadInput
-/// where there is no such file.
-int run_cases(const std::vector<std::string>& common, const std::string& file, const Run& run);
-
-namespace {
 
 using Words = std::vector<std::string>;
 
@@ -97,20 +89,17 @@ Ending run_line(const Words& common, const std::string& line, const Run& run, Js
   }
 }
 
-void print(const Json& answer) {
-  const std::string line = answer.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
-  const bool printed = std::fputs(line.c_str(), stdout) >= 0 && std::fflush(stdout) == 0;
-  if (!printed) throw SystemFailure("standard output cannot be written");
-}
-
 BadInput unreadable(const std::string& file) {
   return BadInput(fmt::format("-cases = {}: cannot be read; name a file of lines such as -mu_d 0.5 "
                               "-tau 2, or - for standard input",
                               file));
 }
 
-}  // namespace
-
+/// Runs a case for each line of a file, or of standard input for "-", one after the other: its
+/// options are the words `common` and those of the line. Each is answered on standard output by a
+/// line of JSON: its exit status, and what -summary writes or what went wrong. A case that fails
+/// leaves the others alone. Returns the largest status. Not for several ranks. Throws BadInput
+/// where there is no such file.
 int run_cases(const Words& common, const std::string& file, const Run& run) {
   if (linalg::ranks(MPI_COMM_WORLD) > 1) {
     throw BadInput("-cases: runs on one rank; start the program once for each core instead");
@@ -125,14 +114,12 @@ int run_cases(const Words& common, const std::string& file, const Run& run) {
     const Ending ending = run_line(common, line, run, answer);
     answer["status"] = ending.status;
     if (!ending.message.empty()) answer["message"] = ending.message;
-    print(answer);
+    print(answer.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n");
     largest = std::max(largest, ending.status);
   }
   if (lines.bad()) throw unreadable(file);  // as a folder is
   return largest;
 }
-
-namespace {
 
 using Clock = std::chrono::steady_clock;
 

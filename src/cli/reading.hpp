@@ -72,8 +72,6 @@ void check_rules(Settings& settings, Request& request);
 /// The run that the settings ask for; what is wrong with it is added to their problems.
 [[nodiscard]] Request request_of(Settings& settings);
 
-// request.cpp
-
 /// Words on the line that are neither an option nor the value of one; PETSc would ignore them.
 void check_stray_words(const std::vector<std::string>& argv, Problems& problems);
 

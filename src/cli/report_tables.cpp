@@ -1,4 +1,4 @@
-#include "stickslip/cli/report_tables.hpp"
+#include "stickslip/cli/reports.hpp"
 
 #include <fmt/format.h>
 
@@ -18,107 +18,7 @@ std::string without_blanks_at_end(std::string line) {
   return line + "\n";
 }
 
-}  // namespace
-
-TextTable::TextTable(std::vector<Column> columns, std::size_t gap)
-    : columns_(std::move(columns)), gap_(gap) {}
-
-void TextTable::add(std::vector<std::string> cells) {
-  cells.resize(columns_.size());
-  rows_.push_back({std::move(cells), ""});
-}
-
-void TextTable::add_line(std::string line) { rows_.push_back({{}, std::move(line)}); }
-
-std::vector<std::size_t> TextTable::widths() const {
-  std::vector<std::size_t> widths;
-  for (const Column& column : columns_) {
-    widths.push_back(std::max(column.title.size(), column.above.size()));
-  }
-  for (const Row& row : rows_) {
-    for (std::size_t c = 0; c < row.cells.size(); ++c) {
-      widths[c] = std::max(widths[c], row.cells[c].size());
-    }
-  }
-  return widths;
-}
-
-std::string TextTable::text() const {
-  const auto width = widths();
-  const auto line = [&](const auto& cell) {
-    std::string text;
-    for (std::size_t c = 0; c < columns_.size(); ++c) {
-      text += c == 0 ? "" : std::string(gap_, ' ');
-      text += columns_[c].left ? fmt::format("{:<{}}", cell(c), width[c])
-                               : fmt::format("{:>{}}", cell(c), width[c]);
-    }
-    return without_blanks_at_end(std::move(text));
-  };
-  const bool two_lines = std::any_of(columns_.begin(), columns_.end(),
-                                     [](const Column& column) { return !column.above.empty(); });
-  std::string text;
-  if (two_lines) text += line([&](std::size_t c) { return columns_[c].above; });
-  text += line([&](std::size_t c) { return columns_[c].title; });
-  for (const Row& row : rows_) {
-    text += row.cells.empty() ? without_blanks_at_end(row.line)
-                              : line([&](std::size_t c) { return row.cells[c]; });
-  }
-  return text;
-}
-
-std::string spaced(std::span<const std::string> parts) {
-  std::string text;
-  std::size_t length = 0;  // of the last line
-  for (const std::string& part : parts) {
-    const bool fits = length + 3 + part.size() <= kLineWidth;
-    if (!text.empty()) text += fits ? "   " : "\n";
-    length = text.empty() || !fits ? part.size() : length + 3 + part.size();
-    text += part;
-  }
-  return text + "\n";
-}
-
-namespace {
-
 std::string unit_behind(const std::string& unit) { return unit.empty() ? "" : " " + unit; }
-
-}  // namespace
-
-std::string scene_text(const model::Scene& s) {
-  std::vector<std::string> parts;
-  const auto add = [&](const char* name, double value) {
-    parts.push_back(fmt::format("{} = {:g}", name, value));
-  };
-  const auto add_static = [&](const char* name, double given, std::optional<double> effective) {
-    add(name, given);
-    if (effective) parts.back() += fmt::format(" (acts as {:g})", *effective);
-  };
-  const auto backwards = s.friction.mirrored();
-  const auto along = model::effective_mu_s(s, false), against = model::effective_mu_s(s, true);
-  add_static("mu_s", s.friction.mu_s, along);
-  add("mu_d", s.friction.mu_d);
-  if (!s.friction.symmetric() || against != along)
-    add_static("mu_s_minus", backwards.mu_s, against);
-  if (!s.friction.symmetric()) add("mu_d_minus", backwards.mu_d);
-  for (const auto* choice : effects::choices()) {
-    for (auto& part : effects::heading(choice->in(s), s)) parts.push_back(std::move(part));
-  }
-  if (s.bias != 0) add("bias", s.bias);
-  if (s.force) {
-    const auto n = s.force->peak();
-    parts.push_back(fmt::format("force of {}, at most {:.5g}{} at time {:g}{}", s.force->file,
-                                std::abs(s.force->force[n]), unit_behind(s.force->unit),
-                                s.force->time[n], s.force->unit.empty() ? "" : " s"));
-    if (s.force->gravity > 0) add("force_gravity", s.force->gravity);
-  }
-  return spaced(parts);
-}
-
-std::string cell(double value, int digits) {
-  return std::isnan(value) ? "" : fmt::format("{:.{}g}", value, digits);
-}
-
-namespace {
 
 constexpr std::size_t kLongestKey = 40;  // longer ones have a line of their own
 
@@ -228,54 +128,6 @@ std::string verdict_on_accuracy(const cases::Question& question, const run::Outc
                                "\n";
 }
 
-}  // namespace
-
-std::string run_table(const Request& request, const run::Outcome& outcome, const RunTimes& times) {
-  std::string text = scene_text(request.scene) + "\n" + results_table(outcome.results);
-  if (outcome.simulation) text += "errors are half widths of 95 % confidence intervals\n";
-  text += elsewhere(request, outcome);
-  if (outcome.comparison) text += comparison_table(*outcome.comparison, request.files.compared);
-  text += "\n" + cost_table(request.method.scheme, outcome);
-  text += verdict_on_accuracy(request.question, outcome);
-  text += fmt::format("{:.2f} s in total, {:.2f} s of it start-up\n", times.total, times.start_up);
-  if (outcome.next_digit_seconds > 0) {
-    text += fmt::format("one more digit would take about {:.2g} s\n", outcome.next_digit_seconds);
-  }
-  return text;
-}
-
-// A velocity discretisation comes with a linear system; the fluid queue has neither.
-std::vector<TextTable::Column> size_columns(cases::Scheme scheme) {
-  std::vector<TextTable::Column> columns;
-  if (scheme == cases::Scheme::hp) columns = {{"degree"}, {"layers"}};
-  if (scheme == cases::Scheme::upwind) columns = {{"p"}};
-  columns.push_back({"levels", false, "noise"});
-  columns.push_back({"nodes", false, "noise"});
-  if (scheme == cases::Scheme::none) return columns;
-  columns.insert(columns.end(), {{"v_max"}, {"unknowns"}, {"nonzeros"}});
-  return columns;
-}
-
-std::string count_text(double count) { return count > 0 ? fmt::format("{:.2e}", count) : "-"; }
-
-std::vector<std::string> size_cells(const run::Resolution& r, std::int64_t unknowns,
-                                    std::int64_t nonzeros) {
-  std::vector<std::string> cells;
-  if (r.scheme == cases::Scheme::hp) {
-    cells = {std::to_string(r.degree), std::to_string(r.layers)};
-  }
-  if (r.scheme == cases::Scheme::upwind) cells = {std::to_string(r.points)};
-  cells.push_back(std::to_string(r.levels));
-  cells.push_back(std::to_string(r.noise_nodes()));
-  if (r.scheme == cases::Scheme::none) return cells;
-  cells.push_back(fmt::format("{:.4g}", r.v_max));
-  cells.push_back(std::to_string(unknowns));
-  cells.push_back(count_text(static_cast<double>(nonzeros)));
-  return cells;
-}
-
-namespace {
-
 std::string checks_table(const run::Step& step) {
   std::string text;
   for (const auto& [name, value, meaning] : step.checks) {
@@ -295,18 +147,21 @@ std::string simulation_lines(const run::Simulated& simulated) {
 }
 
 // Symbolic and numerical factorisation together; the files hold both.
-std::vector<std::string> step_cells(const run::Step& step) {
+std::vector<TextTable::Cell> step_cells(const run::Step& step) {
   const auto& s = step.statistics;
   auto cells = size_cells(step.resolution, s.unknowns, s.nonzeros);
+  const auto add_seconds = [&cells](const char* of, double seconds) {
+    cells.push_back({{"s", false, of}, seconds_text(seconds)});
+  };
   if (step.resolution.scheme != cases::Scheme::none) {
-    cells.push_back(fmt::format("{:.0f}", s.factor_megabytes));
-    for (double seconds :
-         {s.assembly_seconds, s.analysis_seconds + s.factorization_seconds, s.solve_seconds}) {
-      cells.push_back(seconds_text(seconds));
-    }
+    cells.push_back({{"MB", false, "factors"}, fmt::format("{:.0f}", s.factor_megabytes)});
+    add_seconds("assembly", s.assembly_seconds);
+    add_seconds("factor", s.analysis_seconds + s.factorization_seconds);
+    add_seconds("solve", s.solve_seconds);
   }
-  cells.push_back(seconds_text(step.seconds));
-  cells.push_back(step.limiting_key.empty() ? "-" : error_text(step.estimate));
+  add_seconds("total", step.seconds);
+  cells.push_back(
+      {{"error", false, "rel."}, step.limiting_key.empty() ? "-" : error_text(step.estimate)});
   return cells;
 }
 
@@ -324,22 +179,11 @@ std::string estimate_lines(const std::vector<run::Step>& steps) {
   return key.empty() ? text : text + "largest relative error, last row: " + key + "\n";
 }
 
-}  // namespace
-
-std::string cost_table(cases::Scheme scheme, const run::Outcome& outcome) {
+std::string cost_table(const run::Outcome& outcome) {
   if (outcome.simulation) return simulation_lines(*outcome.simulation);
   if (outcome.steps.empty()) return "closed-form results only: no linear system was assembled\n";
-  auto columns = size_columns(scheme);
-  if (scheme != cases::Scheme::none) {
-    columns.insert(columns.end(), {{"MB", false, "factors"},
-                                   {"s", false, "assembly"},
-                                   {"s", false, "factor"},
-                                   {"s", false, "solve"}});
-  }
-  columns.push_back({"s", false, "total"});
-  columns.push_back({"error", false, "rel."});
-  TextTable table(std::move(columns), 1);
-  for (const auto& step : outcome.steps) table.add(step_cells(step));
+  TextTable table({}, 1);
+  for (const auto& step : outcome.steps) table.add_titled(step_cells(step));
   std::string text = table.text() + estimate_lines(outcome.steps);
   const auto& total = outcome.total;
   if (total.iterations > 0) {
@@ -347,6 +191,139 @@ std::string cost_table(cases::Scheme scheme, const run::Outcome& outcome) {
                         total.iterations, total.solves, total.corrections);
   }
   return text + checks_table(outcome.steps.back());
+}
+
+}  // namespace
+
+TextTable::TextTable(std::vector<Column> columns, std::size_t gap)
+    : columns_(std::move(columns)), gap_(gap) {}
+
+void TextTable::add(std::vector<std::string> cells) {
+  cells.resize(columns_.size());
+  rows_.push_back({std::move(cells), ""});
+}
+
+void TextTable::add_titled(const std::vector<Cell>& cells) {
+  if (rows_.empty()) std::ranges::transform(cells, std::back_inserter(columns_), &Cell::first);
+  std::ranges::transform(cells, std::back_inserter(rows_.emplace_back().cells), &Cell::second);
+}
+
+void TextTable::add_line(std::string line) { rows_.push_back({{}, std::move(line)}); }
+
+std::vector<std::size_t> TextTable::widths() const {
+  std::vector<std::size_t> widths;
+  for (const Column& column : columns_) {
+    widths.push_back(std::max(column.title.size(), column.above.size()));
+  }
+  for (const Row& row : rows_) {
+    for (std::size_t c = 0; c < row.cells.size(); ++c) {
+      widths[c] = std::max(widths[c], row.cells[c].size());
+    }
+  }
+  return widths;
+}
+
+std::string TextTable::text() const {
+  const auto width = widths();
+  const auto line = [&](const auto& cell) {
+    std::string text;
+    for (std::size_t c = 0; c < columns_.size(); ++c) {
+      text += c == 0 ? "" : std::string(gap_, ' ');
+      text += columns_[c].left ? fmt::format("{:<{}}", cell(c), width[c])
+                               : fmt::format("{:>{}}", cell(c), width[c]);
+    }
+    return without_blanks_at_end(std::move(text));
+  };
+  const bool two_lines = std::any_of(columns_.begin(), columns_.end(),
+                                     [](const Column& column) { return !column.above.empty(); });
+  std::string text;
+  if (two_lines) text += line([&](std::size_t c) { return columns_[c].above; });
+  text += line([&](std::size_t c) { return columns_[c].title; });
+  for (const Row& row : rows_) {
+    text += row.cells.empty() ? without_blanks_at_end(row.line)
+                              : line([&](std::size_t c) { return row.cells[c]; });
+  }
+  return text;
+}
+
+std::string spaced(std::span<const std::string> parts) {
+  std::string text;
+  std::size_t length = 0;  // of the last line
+  for (const std::string& part : parts) {
+    const bool fits = length + 3 + part.size() <= kLineWidth;
+    if (!text.empty()) text += fits ? "   " : "\n";
+    length = text.empty() || !fits ? part.size() : length + 3 + part.size();
+    text += part;
+  }
+  return text + "\n";
+}
+
+std::string scene_text(const model::Scene& s) {
+  std::vector<std::string> parts;
+  const auto add = [&](const char* name, double value) {
+    parts.push_back(fmt::format("{} = {:g}", name, value));
+  };
+  const auto add_static = [&](const char* name, double given, std::optional<double> effective) {
+    add(name, given);
+    if (effective) parts.back() += fmt::format(" (acts as {:g})", *effective);
+  };
+  const auto backwards = s.friction.mirrored();
+  const auto along = model::effective_mu_s(s, false), against = model::effective_mu_s(s, true);
+  add_static("mu_s", s.friction.mu_s, along);
+  add("mu_d", s.friction.mu_d);
+  if (!s.friction.symmetric() || against != along)
+    add_static("mu_s_minus", backwards.mu_s, against);
+  if (!s.friction.symmetric()) add("mu_d_minus", backwards.mu_d);
+  for (const auto* choice : effects::choices()) {
+    for (auto& part : effects::heading(choice->in(s), s)) parts.push_back(std::move(part));
+  }
+  if (s.bias != 0) add("bias", s.bias);
+  if (s.force) {
+    const auto n = s.force->peak();
+    parts.push_back(fmt::format("force of {}, at most {:.5g}{} at time {:g}{}", s.force->file,
+                                std::abs(s.force->force[n]), unit_behind(s.force->unit),
+                                s.force->time[n], s.force->unit.empty() ? "" : " s"));
+    if (s.force->gravity > 0) add("force_gravity", s.force->gravity);
+  }
+  return spaced(parts);
+}
+
+std::string cell(double value, int digits) {
+  return std::isnan(value) ? "" : fmt::format("{:.{}g}", value, digits);
+}
+
+std::string run_table(const Request& request, const run::Outcome& outcome, const RunTimes& times) {
+  std::string text = scene_text(request.scene) + "\n" + results_table(outcome.results);
+  if (outcome.simulation) text += "errors are half widths of 95 % confidence intervals\n";
+  text += elsewhere(request, outcome);
+  if (outcome.comparison) text += comparison_table(*outcome.comparison, request.files.compared);
+  text += "\n" + cost_table(outcome);
+  text += verdict_on_accuracy(request.question, outcome);
+  text += fmt::format("{:.2f} s in total, {:.2f} s of it start-up\n", times.total, times.start_up);
+  if (outcome.next_digit_seconds > 0) {
+    text += fmt::format("one more digit would take about {:.2g} s\n", outcome.next_digit_seconds);
+  }
+  return text;
+}
+
+std::string count_text(double count) { return count > 0 ? fmt::format("{:.2e}", count) : "-"; }
+
+std::vector<TextTable::Cell> size_cells(const run::Resolution& r, std::int64_t unknowns,
+                                        std::int64_t nonzeros) {
+  std::vector<TextTable::Cell> cells;
+  const auto add = [&cells](TextTable::Column column, auto value) {
+    cells.emplace_back(std::move(column), fmt::format("{}", value));
+  };
+  if (r.scheme == cases::Scheme::hp) add({"degree"}, r.degree);
+  if (r.scheme == cases::Scheme::hp) add({"layers"}, r.layers);
+  if (r.scheme == cases::Scheme::upwind) add({"p"}, r.points);
+  add({"levels", false, "noise"}, r.levels);
+  add({"nodes", false, "noise"}, r.noise_nodes());
+  if (r.scheme == cases::Scheme::none) return cells;
+  add({"v_max"}, fmt::format("{:.4g}", r.v_max));
+  add({"unknowns"}, unknowns);
+  add({"nonzeros"}, count_text(static_cast<double>(nonzeros)));
+  return cells;
 }
 
 }  // namespace stickslip::cli

@@ -14,7 +14,6 @@
 
 #include "stickslip/base/text.hpp"
 #include "stickslip/case/force_rows.hpp"
-#include "stickslip/cli/report_tables.hpp"
 #include "stickslip/cli/version.hpp"
 #include "stickslip/linalg/session.hpp"
 #include "stickslip/model/effect.hpp"
@@ -54,42 +53,6 @@ std::string slepc_version() {
 
 const char* scalar_type() { return linalg::complex_scalars() ? "complex" : "real"; }
 
-}  // namespace
-
-std::vector<std::pair<std::string, std::string>> provenance(MPI_Comm comm) {
-  return {{"program", "stickslip " + std::string(kVersion)},
-          {"commit", kCommit},
-          {"scalar", scalar_type()},
-          {"petsc", petsc_version()},
-          {"slepc", slepc_version()},
-          {"mpi", mpi_library()},
-          {"blas", linalg::loaded_blas().library},
-          {"compiler", compiler()},
-          {"host", host()},
-          {"ranks", std::to_string(linalg::ranks(comm))},
-          {"date", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)))}};
-}
-
-std::string version_number() { return kVersion; }
-
-std::string version_text() {
-  return fmt::format("stickslip {} ({}, {} scalars)\nPETSc {}, SLEPc {}, BLAS {}\n", kVersion,
-                     kCommit, scalar_type(), petsc_version(), slepc_version(),
-                     linalg::loaded_blas().library);
-}
-
-Json scene_json(const model::Scene& s) {
-  Json scene;
-  for (const auto& [name, value] : effects::parameters_of(s)) {
-    std::visit([&, key = name](const auto& one) { scene[key] = one; }, value);
-    if (name == "delta") scene["noise_levels_meant"] = s.meant().noise.levels;
-  }
-  const auto along = model::effective_mu_s(s, false), against = model::effective_mu_s(s, true);
-  if (along) scene["mu_s_effective"] = *along;
-  if (against && !s.symmetric()) scene["mu_s_minus_effective"] = *against;
-  return scene;
-}
-
 Json seconds_json(const linalg::SolverStatistics& statistics) {
   return {{"assembly_seconds", statistics.assembly_seconds},
           {"analysis_seconds", statistics.analysis_seconds},
@@ -98,37 +61,21 @@ Json seconds_json(const linalg::SolverStatistics& statistics) {
 }
 
 Json resolution_json(const run::Resolution& r) {
-  Json json;
-  switch (r.scheme) {
-  case cases::Scheme::hp:
+  Json json{{"scheme", "none"}};
+  if (r.scheme == cases::Scheme::hp) {
     json = {{"scheme", "hp"},
             {"degree", r.degree},
             {"layers", r.layers},
             {"noise_degree", r.grouping.degree},
             {"v_max", r.v_max}};
-    break;
-  case cases::Scheme::upwind:
+  }
+  if (r.scheme == cases::Scheme::upwind) {
     json = {{"scheme", "upwind"}, {"p", r.points}, {"v_max", r.v_max}};
-    break;
-  case cases::Scheme::none: json = {{"scheme", "none"}}; break;
   }
   json["noise_levels"] = r.levels;
   json["noise_nodes"] = r.noise_nodes();
   return json;
 }
-
-Report report_from(MPI_Comm comm, const Request& request, Subject subject, const RunTimes& times) {
-  Report report;
-  report.subject = subject;
-  report.comm = comm;
-  report.provenance = provenance(comm);
-  report.options = request.resolved;
-  report.warnings = request.warnings;
-  report.seconds = times.total;
-  return report;
-}
-
-namespace {
 
 Json comparison_json(const run::Comparison& comparison, const std::string& compared) {
   Json rows = Json::array();
@@ -221,40 +168,6 @@ std::vector<std::vector<std::string>> path_rows(const quantities::Results& resul
   return rows;
 }
 
-}  // namespace
-
-Json run_json(const cases::Case& given, const run::Outcome& outcome, const RunTimes& times,
-              const std::string& compared) {
-  Json json;
-  json["scene"] = scene_of(given.scene, outcome);
-  json["results"] = results_json(outcome.results);
-  json["accuracy"] = {{"asked", given.question.accuracy}, {"reached", outcome.reached}};
-  if (!outcome.reached) json["accuracy"]["shortfall"] = outcome.shortfall;
-  if (outcome.comparison) json["comparison"] = comparison_json(*outcome.comparison, compared);
-  json["cost"] = cost_of(outcome, times);
-  json["plan"] = plan_of(outcome.total);
-  return json;
-}
-
-Report report_of(MPI_Comm comm, const Request& request, const run::Outcome& outcome,
-                 const RunTimes& times) {
-  Report report = report_from(comm, request, Subject::run, times);
-  report.text = run_table(request, outcome, times);
-  report.tree = [&request, &outcome, times] {
-    return run_json(request, outcome, times, request.files.compared);
-  };
-  if (request.question.wants(cases::kGivenForce.quantity)) {
-    report.rows = [&outcome] { return path_rows(outcome.results); };
-  }
-  report.density = outcome.density ? &*outcome.density : nullptr;
-  report.speed_error = outcome.speed_error;
-  report.modes = outcome.modes;
-  report.path = outcome.path ? &*outcome.path : nullptr;
-  return report;
-}
-
-namespace {
-
 const char* symmetry_name(generator::Symmetry symmetry) {
   switch (symmetry) {
   case generator::Symmetry::even: return "even";
@@ -312,23 +225,19 @@ std::string tasks_table(const quantities::Plan& plan) {
                      plan.factorizations(), plan.solves());
 }
 
-std::string steps_table(cases::Scheme scheme, const std::vector<run::PredictedStep>& steps) {
-  auto columns = size_columns(scheme);
-  const bool system = scheme != cases::Scheme::none;
-  if (system) {
-    columns.insert(columns.end(), {{"entries", false, "factor"}, {"MB", false, "factors"}});
-  }
-  columns.push_back({"s", false, "total"});
-  TextTable table(std::move(columns), 1);
+std::string steps_table(const std::vector<run::PredictedStep>& steps) {
+  TextTable table({}, 1);
   for (const auto& step : steps) {
     auto cells = size_cells(step.resolution, step.unknowns, step.nonzeros);
-    if (system) {
-      cells.push_back(step.fits ? count_text(step.factor_entries) : "-");
-      cells.push_back(fmt::format("{:.0f}", step.megabytes));
+    if (step.resolution.scheme != cases::Scheme::none) {
+      cells.push_back(
+          {{"entries", false, "factor"}, step.fits ? count_text(step.factor_entries) : "-"});
+      cells.push_back({{"MB", false, "factors"}, fmt::format("{:.0f}", step.megabytes)});
     }
     // What is not predicted is 0.
-    cells.push_back(!step.fits ? "too large" : step.seconds > 0 ? seconds_text(step.seconds) : "-");
-    table.add(std::move(cells));
+    const std::string seconds = step.seconds > 0 ? seconds_text(step.seconds) : "-";
+    cells.push_back({{"s", false, "total"}, step.fits ? seconds : "too large"});
+    table.add_titled(cells);
   }
   return table.text();
 }
@@ -367,7 +276,7 @@ std::string text_of(const Request& request, const run::Prediction& prediction) {
     return text + fmt::format("{:g} excursions are simulated; no linear system is assembled\n",
                               request.method.excursions);
   }
-  text += tasks_table(plan) + "\n" + steps_table(request.method.scheme, prediction.steps);
+  text += tasks_table(plan) + "\n" + steps_table(prediction.steps);
   if (plan.tasks.empty() || !prediction.shortfall.empty()) return text;
   return text +
          fmt::format("about {:.2g} s for these refinement levels; finer ones follow if error "
@@ -388,17 +297,6 @@ Json tree_of(const Request& request, const run::Prediction& prediction) {
                   {"seconds", prediction.seconds}};
   return {{"scene", scene_json(request.scene)}, {"plan", plan}};
 }
-
-}  // namespace
-
-Report report_of(MPI_Comm comm, const Request& request, const run::Prediction& prediction) {
-  Report report = report_from(comm, request, Subject::plan, {});
-  report.text = text_of(request, prediction);
-  report.tree = [&request, &prediction] { return tree_of(request, prediction); };
-  return report;
-}
-
-namespace {
 
 // `error` is the number in the next column.
 std::string digits_of(double value, double error, run::Digits digits) {
@@ -492,6 +390,88 @@ std::vector<std::vector<std::string>> rows_of(const run::Study& study) {
 }
 
 }  // namespace
+
+std::vector<std::pair<std::string, std::string>> provenance(MPI_Comm comm) {
+  return {{"program", "stickslip " + std::string(kVersion)},
+          {"commit", kCommit},
+          {"scalar", scalar_type()},
+          {"petsc", petsc_version()},
+          {"slepc", slepc_version()},
+          {"mpi", mpi_library()},
+          {"blas", linalg::loaded_blas().library},
+          {"compiler", compiler()},
+          {"host", host()},
+          {"ranks", std::to_string(linalg::ranks(comm))},
+          {"date", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)))}};
+}
+
+std::string version_number() { return kVersion; }
+
+std::string version_text() {
+  return fmt::format("stickslip {} ({}, {} scalars)\nPETSc {}, SLEPc {}, BLAS {}\n", kVersion,
+                     kCommit, scalar_type(), petsc_version(), slepc_version(),
+                     linalg::loaded_blas().library);
+}
+
+Json scene_json(const model::Scene& s) {
+  Json scene;
+  for (const auto& [name, value] : effects::parameters_of(s)) {
+    std::visit([&, key = name](const auto& one) { scene[key] = one; }, value);
+    if (name == "delta") scene["noise_levels_meant"] = s.meant().noise.levels;
+  }
+  const auto along = model::effective_mu_s(s, false), against = model::effective_mu_s(s, true);
+  if (along) scene["mu_s_effective"] = *along;
+  if (against && !s.symmetric()) scene["mu_s_minus_effective"] = *against;
+  return scene;
+}
+
+Report report_from(MPI_Comm comm, const Request& request, Subject subject, const RunTimes& times) {
+  Report report;
+  report.subject = subject;
+  report.comm = comm;
+  report.provenance = provenance(comm);
+  report.options = request.resolved;
+  report.warnings = request.warnings;
+  report.seconds = times.total;
+  return report;
+}
+
+Json run_json(const cases::Case& given, const run::Outcome& outcome, const RunTimes& times,
+              const std::string& compared) {
+  Json json;
+  json["scene"] = scene_of(given.scene, outcome);
+  json["results"] = results_json(outcome.results);
+  json["accuracy"] = {{"asked", given.question.accuracy}, {"reached", outcome.reached}};
+  if (!outcome.reached) json["accuracy"]["shortfall"] = outcome.shortfall;
+  if (outcome.comparison) json["comparison"] = comparison_json(*outcome.comparison, compared);
+  json["cost"] = cost_of(outcome, times);
+  json["plan"] = plan_of(outcome.total);
+  return json;
+}
+
+Report report_of(MPI_Comm comm, const Request& request, const run::Outcome& outcome,
+                 const RunTimes& times) {
+  Report report = report_from(comm, request, Subject::run, times);
+  report.text = run_table(request, outcome, times);
+  report.tree = [&request, &outcome, times] {
+    return run_json(request, outcome, times, request.files.compared);
+  };
+  if (request.question.wants(cases::kGivenForce.quantity)) {
+    report.rows = [&outcome] { return path_rows(outcome.results); };
+  }
+  report.density = outcome.density ? &*outcome.density : nullptr;
+  report.speed_error = outcome.speed_error;
+  report.modes = outcome.modes;
+  report.path = outcome.path ? &*outcome.path : nullptr;
+  return report;
+}
+
+Report report_of(MPI_Comm comm, const Request& request, const run::Prediction& prediction) {
+  Report report = report_from(comm, request, Subject::plan, {});
+  report.text = text_of(request, prediction);
+  report.tree = [&request, &prediction] { return tree_of(request, prediction); };
+  return report;
+}
 
 Report report_of(MPI_Comm comm, const Request& request, const run::Study& study,
                  const RunTimes& times) {

@@ -115,45 +115,6 @@ void check_options_file(const std::string& name, std::vector<std::string> above,
   }
 }
 
-}  // namespace
-
-void check_stray_words(const std::vector<std::string>& argv, Problems& problems) {
-  for (std::size_t n = 0; n < argv.size(); ++n) {
-    const bool is_value = n > 0 && is_option_name(argv[n - 1]);
-    const bool after_sign = n > 0 && argv[n - 1] == "=";  // of which the option complains
-    if (is_option_name(argv[n]) || is_value || after_sign) continue;
-    const bool in_list = argv[n].starts_with(',') || (n > 0 && argv[n - 1].ends_with(','));
-    std::error_code error;
-    const bool is_file = std::filesystem::is_regular_file(argv[n], error);
-    problems.add(fmt::format("{}: belongs to no option; {}", argv[n],
-                             in_list         ? "lists have no spaces, as in a,b"
-                             : is_file       ? "did you mean -options_file " + argv[n] + "?"
-                             : find(argv[n]) ? "did you mean -" + argv[n] + "?"
-                                             : "options look like -name value"));
-  }
-}
-
-void shield_formulas(std::vector<std::string>& argv) {
-  for (std::size_t n = 1; n < argv.size(); ++n) {
-    if (is_formula(argv[n - 1], argv[n])) argv[n].insert(0, " ");
-  }
-}
-
-void check_options_files(const std::vector<std::string>& argv) {
-  Problems problems;
-  for (std::size_t n = 0; n < argv.size(); ++n) {
-    if (argv[n] != "-options_file") continue;
-    if (n + 1 == argv.size()) {
-      problems.add("-options_file: names no file; write -options_file scene.opts");
-      break;
-    }
-    check_options_file(argv[n + 1], {}, problems);
-  }
-  problems.raise();
-}
-
-namespace {
-
 // A misspelled name would be left out, and the rest agree.
 void check_keys(Settings& settings, const std::vector<cases::Reference>& references) {
   std::vector<std::string> keys;
@@ -416,43 +377,6 @@ void check_horizon(Settings& settings, const Request& request) {
       fmt::format("take at most {:.3g}", horizon * most / jumps));
 }
 
-}  // namespace
-
-std::vector<std::string> asked_quantities(const Settings& settings) {
-  auto words = settings.list("quantities");
-  if (settings.has("force_file")) {
-    std::ranges::replace(words, std::string(cases::kTrajectory.word),
-                         std::string(cases::kGivenForce.word));
-  }
-  return words;
-}
-
-void read_question(Settings& settings, Request& request) {
-  Question& question = request.question;
-  question.references = read_compared(settings);
-  read_quantities(settings, request);
-  const auto& known = question.references;
-  for (const auto* argument : cases::arguments()) {
-    question.set_values(std::string(argument->option), values_of(*argument, settings, known));
-  }
-  question.observables = read_observables(settings, request.scene.friction);
-  question.accuracy = settings.real("accuracy");
-  question.accuracy_given = settings.has("accuracy");
-  if (!question.accuracy_given) {
-    question.accuracy = std::max(question.accuracy, question.usual_accuracy());
-  }
-  question.horizon = settings.real("horizon");
-  check_horizon(settings, request);
-  question.passage = meaning(kPassages, settings.text("passage"));
-  check_speeds(settings, request);
-  if (!settings.sound()) return;  // the others look at states of the model
-  read_starts(settings, request);
-  check_passages(settings, question);
-  examine_observables(settings, request);
-}
-
-namespace {
-
 Method read_method(const Settings& settings) {
   return {.route = cases::method_of(settings.text("route")).route,
           .scheme = meaning(kSchemes, settings.text("scheme")),
@@ -553,6 +477,74 @@ void check_solver_options(Problems& problems) {
 }
 
 }  // namespace
+
+void check_stray_words(const std::vector<std::string>& argv, Problems& problems) {
+  for (std::size_t n = 0; n < argv.size(); ++n) {
+    const bool is_value = n > 0 && is_option_name(argv[n - 1]);
+    const bool after_sign = n > 0 && argv[n - 1] == "=";  // of which the option complains
+    if (is_option_name(argv[n]) || is_value || after_sign) continue;
+    const bool in_list = argv[n].starts_with(',') || (n > 0 && argv[n - 1].ends_with(','));
+    std::error_code error;
+    const bool is_file = std::filesystem::is_regular_file(argv[n], error);
+    problems.add(fmt::format("{}: belongs to no option; {}", argv[n],
+                             in_list         ? "lists have no spaces, as in a,b"
+                             : is_file       ? "did you mean -options_file " + argv[n] + "?"
+                             : find(argv[n]) ? "did you mean -" + argv[n] + "?"
+                                             : "options look like -name value"));
+  }
+}
+
+void shield_formulas(std::vector<std::string>& argv) {
+  for (std::size_t n = 1; n < argv.size(); ++n) {
+    if (is_formula(argv[n - 1], argv[n])) argv[n].insert(0, " ");
+  }
+}
+
+void check_options_files(const std::vector<std::string>& argv) {
+  Problems problems;
+  for (std::size_t n = 0; n < argv.size(); ++n) {
+    if (argv[n] != "-options_file") continue;
+    if (n + 1 == argv.size()) {
+      problems.add("-options_file: names no file; write -options_file scene.opts");
+      break;
+    }
+    check_options_file(argv[n + 1], {}, problems);
+  }
+  problems.raise();
+}
+
+std::vector<std::string> asked_quantities(const Settings& settings) {
+  auto words = settings.list("quantities");
+  if (settings.has("force_file")) {
+    std::ranges::replace(words, std::string(cases::kTrajectory.word),
+                         std::string(cases::kGivenForce.word));
+  }
+  return words;
+}
+
+void read_question(Settings& settings, Request& request) {
+  Question& question = request.question;
+  question.references = read_compared(settings);
+  read_quantities(settings, request);
+  const auto& known = question.references;
+  for (const auto* argument : cases::arguments()) {
+    question.set_values(std::string(argument->option), values_of(*argument, settings, known));
+  }
+  question.observables = read_observables(settings, request.scene.friction);
+  question.accuracy = settings.real("accuracy");
+  question.accuracy_given = settings.has("accuracy");
+  if (!question.accuracy_given) {
+    question.accuracy = std::max(question.accuracy, question.usual_accuracy());
+  }
+  question.horizon = settings.real("horizon");
+  check_horizon(settings, request);
+  question.passage = meaning(kPassages, settings.text("passage"));
+  check_speeds(settings, request);
+  if (!settings.sound()) return;  // the others look at states of the model
+  read_starts(settings, request);
+  check_passages(settings, question);
+  examine_observables(settings, request);
+}
 
 Files read_files(const Settings& settings) {
   const bool terminal = isatty(STDERR_FILENO) != 0;

@@ -23,7 +23,6 @@
 #include "reading.hpp"
 #include "stickslip/base/errors.hpp"
 #include "stickslip/cli/output.hpp"
-#include "stickslip/cli/report_tables.hpp"
 #include "stickslip/cli/reports.hpp"
 #include "stickslip/linalg/petsc.hpp"
 #include "stickslip/linalg/session.hpp"
@@ -203,82 +202,6 @@ std::vector<std::pair<std::string, std::string>> identity_of(const Settings& set
   return identity;
 }
 
-}  // namespace
-
-Sweep::Sweep(Settings settings, std::vector<SweepAxis> axes)
-    : settings_(std::move(settings)),
-      axes_(std::move(axes)),
-      identity_(identity_of(settings_, axes_)) {}
-
-std::size_t Sweep::size() const {
-  std::size_t points = 1;
-  for (const auto& axis : axes_) points *= axis.values.size();
-  return points;
-}
-
-std::vector<double> Sweep::values(std::size_t point) const {
-  std::vector<double> values(axes_.size());
-  for (std::size_t a = axes_.size(); a-- > 0;) {
-    const auto& all = axes_[a].values;
-    values[a] = all[point % all.size()];
-    point /= all.size();
-  }
-  return values;
-}
-
-std::string Sweep::place(std::size_t point) const {
-  const auto at = values(point);
-  std::string text;
-  for (std::size_t a = 0; a < at.size(); ++a) {
-    text += fmt::format("{}{} = {:g}", a == 0 ? "" : ", ", axes_[a].option, at[a]);
-  }
-  return text;
-}
-
-Settings Sweep::settings(std::size_t point) const {
-  Settings settings = settings_;
-  const auto at = values(point);
-  for (std::size_t a = 0; a < at.size(); ++a) settings.set(axes_[a].option, at[a]);
-  return settings;
-}
-
-Request Sweep::request(std::size_t point) const {
-  Settings of_point = settings(point);
-  Request request = request_of(of_point);
-  request.files = {};
-  return request;
-}
-
-bool sweeps(const Settings& settings) {
-  const auto options = all_options();
-  return std::any_of(options.begin(), options.end(), [&settings](const Option& option) {
-    return swept_by(option) != nullptr && settings.has(option.name);
-  });
-}
-
-Request read_sweep(Settings settings) {
-  Problems& problems = settings.problems();
-  auto axes = read_axes(settings);
-  check_size(axes, problems);
-  check_alone(settings);
-  check_ranks(settings);
-  problems.raise();
-  const auto sweep = std::make_shared<Sweep>(settings, std::move(axes));
-  auto warnings = check_points(*sweep, problems);
-  problems.raise();
-  std::size_t first = 0;
-  while (sweep->left_out().contains(first)) ++first;
-  Request request = sweep->request(first);
-  request.warnings = std::move(warnings);
-  request.sweep = sweep;
-  request.files = read_files(settings);
-  for (auto& [name, value] : request.resolved) {
-    if (is_axis(sweep->axes(), name)) value = kSwept;
-    if (name == "mu_d" && !settings.has(name) && is_axis(sweep->axes(), "mu_s")) value.clear();
-  }
-  return request;
-}
-
 // A number that all ranks count up, each value given once.
 
 /// Lives in the memory of rank 0, which takes no part when others count (one-sided MPI). Not to be
@@ -325,16 +248,13 @@ long SharedCounter::next() {
   return before;
 }
 
-namespace {
-
-constexpr std::array kStatuses{Status::reached, Status::not_reached, Status::failed,
-                               Status::no_memory, Status::refused};
+// In the order of Status.
+constexpr const char* kStatuses[] = {"reached", "not reached", "failed", "no memory", "refused"};
 
 Status status_named(const std::string& text) {
-  for (Status status : kStatuses) {
-    if (text == status_text(status)) return status;
-  }
-  throw std::invalid_argument("no status of a run: " + text);
+  const auto found = std::ranges::find(kStatuses, text);
+  if (found == std::end(kStatuses)) throw std::invalid_argument("no status of a run: " + text);
+  return static_cast<Status>(found - std::begin(kStatuses));
 }
 
 Json head(std::size_t point, Status status, const std::string& message) {
@@ -361,49 +281,6 @@ Json outcome_of(MPI_Comm comm, const cases::Case& given, std::size_t point) {
     return json;
   }
 }
-
-}  // namespace
-
-const char* status_text(Status status) {
-  switch (status) {
-  case Status::reached: return "reached";
-  case Status::not_reached: return "not reached";
-  case Status::failed: return "failed";
-  case Status::no_memory: return "no memory";
-  case Status::refused: return "refused";
-  }
-  return "";
-}
-
-SweepPoint compute_run(MPI_Comm comm, const Request& given, std::size_t point) {
-  Json json = outcome_of(comm, given, point);
-  json["warnings"] = given.warnings;
-  return read_run(json.dump());
-}
-
-SweepPoint refused_run(std::size_t point, const std::string& reason) {
-  Json json = head(point, Status::refused, reason);
-  json["scene"] = json["results"] = Json::object();
-  json["cost"]["seconds"] = 0;
-  return read_run(json.dump());
-}
-
-SweepPoint read_run(std::string entry) {
-  const Json json = Json::parse(entry);
-  SweepPoint run;
-  const Json& point = json.at("point");
-  if (!point.is_number_unsigned()) throw std::invalid_argument("no number of a point");
-  run.point = point.get<std::size_t>();
-  run.status = status_named(json.at("status").get<std::string>());
-  run.message = json.value("message", "");
-  run.results = results_of(json.at("results"));
-  (void)json.at("scene");
-  run.seconds = json.at("cost").at("seconds").get<double>();
-  run.entry = std::move(entry);
-  return run;
-}
-
-namespace {
 
 constexpr int kTag = 7;           // of the only messages between single ranks
 constexpr double kPatience = 60;  // seconds between ranks that fail alike
@@ -584,6 +461,110 @@ class Worker {
 };
 
 }  // namespace
+
+Sweep::Sweep(Settings settings, std::vector<SweepAxis> axes)
+    : settings_(std::move(settings)),
+      axes_(std::move(axes)),
+      identity_(identity_of(settings_, axes_)) {}
+
+std::size_t Sweep::size() const {
+  std::size_t points = 1;
+  for (const auto& axis : axes_) points *= axis.values.size();
+  return points;
+}
+
+std::vector<double> Sweep::values(std::size_t point) const {
+  std::vector<double> values(axes_.size());
+  for (std::size_t a = axes_.size(); a-- > 0;) {
+    const auto& all = axes_[a].values;
+    values[a] = all[point % all.size()];
+    point /= all.size();
+  }
+  return values;
+}
+
+std::string Sweep::place(std::size_t point) const {
+  const auto at = values(point);
+  std::string text;
+  for (std::size_t a = 0; a < at.size(); ++a) {
+    text += fmt::format("{}{} = {:g}", a == 0 ? "" : ", ", axes_[a].option, at[a]);
+  }
+  return text;
+}
+
+Settings Sweep::settings(std::size_t point) const {
+  Settings settings = settings_;
+  const auto at = values(point);
+  for (std::size_t a = 0; a < at.size(); ++a) settings.set(axes_[a].option, at[a]);
+  return settings;
+}
+
+Request Sweep::request(std::size_t point) const {
+  Settings of_point = settings(point);
+  Request request = request_of(of_point);
+  request.files = {};
+  return request;
+}
+
+bool sweeps(const Settings& settings) {
+  const auto options = all_options();
+  return std::any_of(options.begin(), options.end(), [&settings](const Option& option) {
+    return swept_by(option) != nullptr && settings.has(option.name);
+  });
+}
+
+Request read_sweep(Settings settings) {
+  Problems& problems = settings.problems();
+  auto axes = read_axes(settings);
+  check_size(axes, problems);
+  check_alone(settings);
+  check_ranks(settings);
+  problems.raise();
+  const auto sweep = std::make_shared<Sweep>(settings, std::move(axes));
+  auto warnings = check_points(*sweep, problems);
+  problems.raise();
+  std::size_t first = 0;
+  while (sweep->left_out().contains(first)) ++first;
+  Request request = sweep->request(first);
+  request.warnings = std::move(warnings);
+  request.sweep = sweep;
+  request.files = read_files(settings);
+  for (auto& [name, value] : request.resolved) {
+    if (is_axis(sweep->axes(), name)) value = kSwept;
+    if (name == "mu_d" && !settings.has(name) && is_axis(sweep->axes(), "mu_s")) value.clear();
+  }
+  return request;
+}
+
+const char* status_text(Status status) { return kStatuses[static_cast<std::size_t>(status)]; }
+
+SweepPoint compute_run(MPI_Comm comm, const Request& given, std::size_t point) {
+  Json json = outcome_of(comm, given, point);
+  json["warnings"] = given.warnings;
+  return read_run(json.dump());
+}
+
+SweepPoint refused_run(std::size_t point, const std::string& reason) {
+  Json json = head(point, Status::refused, reason);
+  json["scene"] = json["results"] = Json::object();
+  json["cost"]["seconds"] = 0;
+  return read_run(json.dump());
+}
+
+SweepPoint read_run(std::string entry) {
+  const Json json = Json::parse(entry);
+  SweepPoint run;
+  const Json& point = json.at("point");
+  if (!point.is_number_unsigned()) throw std::invalid_argument("no number of a point");
+  run.point = point.get<std::size_t>();
+  run.status = status_named(json.at("status").get<std::string>());
+  run.message = json.value("message", "");
+  run.results = results_of(json.at("results"));
+  (void)json.at("scene");
+  run.seconds = json.at("cost").at("seconds").get<double>();
+  run.entry = std::move(entry);
+  return run;
+}
 
 SweepResult run_sweep(MPI_Comm comm, const Request& request, const SweepProgress& progress) {
   return Worker(comm, request, progress).run();

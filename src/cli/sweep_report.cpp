@@ -8,7 +8,6 @@
 #include <span>
 
 #include "stickslip/base/text.hpp"
-#include "stickslip/cli/report_tables.hpp"
 #include "stickslip/cli/reports.hpp"
 
 namespace stickslip::cli {

@@ -74,16 +74,6 @@ quantities::Result result_of(const std::string& key, const Json& json) {
   return result;
 }
 
-}  // namespace
-
-quantities::Results results_of(const Json& json) {
-  quantities::Results results;
-  for (const auto& [key, result] : json.items()) results.push_back(result_of(key, result));
-  return results;
-}
-
-namespace {
-
 // RFC 4180: what holds a comma stands in quotes.
 std::string csv_line(const std::vector<std::string>& cells) {
   std::string line;
@@ -117,7 +107,19 @@ void write_path(const Report& report, const std::string& file) {
   write_text(file, text);
 }
 
+void print_report(const Report& report, const std::string& /*file*/) { print(report.text); }
+
+void write_summary(const Report& report, const std::string& file) {
+  write_text(file, summary_of(report).dump(2) + "\n");
+}
+
 }  // namespace
+
+quantities::Results results_of(const Json& json) {
+  quantities::Results results;
+  for (const auto& [key, result] : json.items()) results.push_back(result_of(key, result));
+  return results;
+}
 
 extern const Output kStudyCsv{.option = "study_csv",
                               .ending = "csv",
@@ -145,19 +147,15 @@ extern const Output kTrajectory{
     .fields = {cases::Quantity::trajectory},
     .write = write_path};
 
-namespace {
-
-void print(const Report& report, const std::string& /*file*/) {
-  const bool printed = std::fputs(report.text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0;
-  if (!printed) throw SystemFailure("standard output cannot be written");
-}
-
-}  // namespace
-
 extern const Output kTable{
     .option = {},
     .subjects = {Subject::run, Subject::study, Subject::sweep, Subject::plan},
-    .write = print};
+    .write = print_report};
+
+void print(const std::string& text) {
+  const bool printed = std::fputs(text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0;
+  if (!printed) throw SystemFailure("standard output cannot be written");
+}
 
 Json summary_of(const Report& report) {
   Json tree = report.tree();
@@ -167,14 +165,6 @@ Json summary_of(const Report& report) {
   tree["warnings"] = report.warnings;
   return tree;
 }
-
-namespace {
-
-void write_summary(const Report& report, const std::string& file) {
-  write_text(file, summary_of(report).dump(2) + "\n");
-}
-
-}  // namespace
 
 extern const Output kSummary{
     .option = "summary",

@@ -1,5 +1,5 @@
 #include "../common/catch.hpp"
-#include "stickslip/cli/report_tables.hpp"
+#include "stickslip/cli/reports.hpp"
 
 using stickslip::cli::spaced;
 using stickslip::cli::TextTable;

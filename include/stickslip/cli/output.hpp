@@ -48,6 +48,9 @@ struct Output {
 /// ranks of the report. Throws what they throw.
 void write_all(const Report& report, const std::map<std::string, std::string>& files);
 
+/// Writes to standard output at once. Throws SystemFailure when it cannot be written.
+void print(const std::string& text);
+
 // Results as JSON, in summaries and in checkpoints of sweeps, and read from it.
 
 // JSON for Modern C++: the common header-only writer; numbers are written so that they read back

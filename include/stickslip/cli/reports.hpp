@@ -3,6 +3,8 @@
 
 #include <mpi.h>
 
+#include <cstddef>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -51,5 +53,75 @@ struct RunTimes {
 /// to request and sweep. Local.
 [[nodiscard]] Report report_of(MPI_Comm comm, const Request& request, const SweepResult& sweep,
                                const RunTimes& times);
+
+// Tables of text for standard output.
+
+/// What printed tables keep to where their content allows.
+inline constexpr std::size_t kLineWidth = 100;
+
+/// Rows of cells in aligned columns, each as wide as its widest cell.
+class TextTable {
+ public:
+  struct Column {
+    std::string title;
+    bool left = false;       ///< aligned at the left; numbers are at the right
+    std::string above = {};  ///< a line of the title over `title`
+  };
+
+  /// A cell with the column that it stands in.
+  using Cell = std::pair<Column, std::string>;
+
+  /// `gap`: blanks between columns.
+  explicit TextTable(std::vector<Column> columns, std::size_t gap = 2);
+
+  /// A row; cells missing at its end are empty, and so are columns without title or cells.
+  void add(std::vector<std::string> cells);
+  /// A row of a table that was made without columns: those of the first row are its columns.
+  void add_titled(const std::vector<Cell>& cells);
+  /// A line across all columns.
+  void add_line(std::string line);
+
+  /// Titles and rows, without blanks at the ends of lines.
+  [[nodiscard]] std::string text() const;
+
+ private:
+  struct Row {
+    std::vector<std::string> cells;
+    std::string line;  // if there are none
+  };
+  [[nodiscard]] std::vector<std::size_t> widths() const;
+
+  std::vector<Column> columns_;
+  std::vector<Row> rows_;
+  std::size_t gap_;
+};
+
+/// Parts of a description one after the other, three blanks between, on lines of kLineWidth.
+[[nodiscard]] std::string spaced(std::span<const std::string> parts);
+
+// Parts that reports of runs, studies, plans and sweeps share.
+
+/// The model parameters, on as many lines as they take.
+[[nodiscard]] std::string scene_text(const model::Scene& scene);
+/// The size of a discretisation. A velocity discretisation comes with a linear system; the fluid
+/// queue has neither.
+[[nodiscard]] std::vector<TextTable::Cell> size_cells(const run::Resolution& resolution,
+                                                      std::int64_t unknowns, std::int64_t nonzeros);
+/// Entries of a matrix or factorisation; "-" for none, where they are not known.
+[[nodiscard]] std::string count_text(double count);
+/// A number in a cell of CSV; nothing for NaN.
+[[nodiscard]] std::string cell(double value, int digits);
+
+[[nodiscard]] Json scene_json(const model::Scene& scene);
+/// What one run found and what it cost: scene, results, accuracy, comparison if any, cost, plan.
+/// `compared` is the name of the file of the references.
+[[nodiscard]] Json run_json(const cases::Case& given, const run::Outcome& outcome,
+                            const RunTimes& times, const std::string& compared = {});
+/// The beginning of a report: where it comes from, and what it took.
+[[nodiscard]] Report report_from(MPI_Comm comm, const Request& request, Subject subject,
+                                 const RunTimes& times);
+/// The text of the report of a run.
+[[nodiscard]] std::string run_table(const Request& request, const run::Outcome& outcome,
+                                    const RunTimes& times);
 
 }  // namespace stickslip::cli
