@@ -81,22 +81,19 @@ void add_row(const run::Compared& c, TextTable& table) {
   const std::string interval =
       fmt::format("[{}, {}]", number_text(r.low, half / 10), number_text(r.high, half / 10));
   const bool long_z = std::abs(c.z) >= 1e4;
-  table.add({r.quantity, r.argument ? fmt::format("{:g}", *r.argument) : "",
-             number_text(c.value, c.error), number_text(r.value, half), interval,
-             long_z ? fmt::format("{:.1e}", c.z) : fmt::format("{:.2f}", c.z),
-             verdict_text(c.verdict)});
+  const std::string z = long_z ? fmt::format("{:.1e}", c.z) : fmt::format("{:.2f}", c.z);
+  table.add_titled({{{"quantity", true}, r.quantity},
+                    {{"argument"}, r.argument ? fmt::format("{:g}", *r.argument) : ""},
+                    {{"value"}, number_text(c.value, c.error)},
+                    {{"reference"}, number_text(r.value, half)},
+                    {{"interval", true, "95 % confidence"}, interval},
+                    {{"z"}, z},
+                    {{"verdict", true}, verdict_text(c.verdict)}});
 }
 
 std::string comparison_table(const run::Comparison& comparison, const std::string& file) {
   constexpr std::size_t most = 40;  // the files hold all
-  TextTable table({{"quantity", true},
-                   {"argument"},
-                   {"value"},
-                   {"reference"},
-                   {"interval", true, "95 % confidence"},
-                   {"z"},
-                   {"verdict", true}},
-                  1);
+  TextTable table({}, 1);
   const auto& rows = comparison.rows;
   for (std::size_t n = 0; n < rows.size(); ++n) {
     const bool shown = rows.size() <= most || n < most / 2 || n >= rows.size() - most / 2 ||
@@ -204,7 +201,7 @@ void TextTable::add(std::vector<std::string> cells) {
 }
 
 void TextTable::add_titled(const std::vector<Cell>& cells) {
-  if (rows_.empty()) std::ranges::transform(cells, std::back_inserter(columns_), &Cell::first);
+  if (columns_.empty()) std::ranges::transform(cells, std::back_inserter(columns_), &Cell::first);
   std::ranges::transform(cells, std::back_inserter(rows_.emplace_back().cells), &Cell::second);
 }
 

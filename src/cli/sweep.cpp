@@ -400,15 +400,14 @@ class Worker {
     if (checkpoint_) checkpoint_->append(run.entry);
     const auto here = static_cast<std::size_t>(done.next()) + 1;
     if (!progress_) return;
-    State state;
-    state.point = run.point;
-    state.count = sweep_.size();
-    state.done = state.count - open_.size() + here;
-    state.seconds_left = (linalg::wall_seconds() - start_) *
-                         static_cast<double>(open_.size() - here) / static_cast<double>(here);
-    state.status = status_text(run.status);
-    state.seconds_of_point = run.seconds;
-    progress_(state);
+    const auto all = sweep_.size(), open = open_.size();
+    const double pace = (linalg::wall_seconds() - start_) / static_cast<double>(here);
+    progress_({.point = run.point,
+               .done = all - open + here,
+               .count = all,
+               .seconds_left = pace * static_cast<double>(open - here),
+               .status = status_text(run.status),
+               .seconds_of_point = run.seconds});
   }
 
   // All runs to rank 0, in the order of the points.
