@@ -20,6 +20,12 @@ MPI_PERMISSIONS = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIR
                    "PRTE_MCA_rmaps_default_mapping_policy": ":oversubscribe"}  # Open MPI 5
 
 
+def script(case):
+    """The words that run a case of the report alone: a folder's script, or an entry of paper.py."""
+    own = f"validation/{case}/run.py"
+    return [own] if (ROOT / own).exists() else ["validation/paper.py", case]
+
+
 def seed_of(options):
     """Seed of what these options simulate: every case has its own, the same one each time. Files are no
     part of a case."""

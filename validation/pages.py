@@ -11,6 +11,7 @@ import shutil
 import struct
 
 from formulas import html_of
+from harness import script
 
 STYLE = pathlib.Path(__file__).with_name("report.css")
 NUMBER = re.compile(r"|N(?:/N)?|\[N, N\]".replace("N", r"[-+]?\d[\d.]*(?:e[-+]?\d+)?"))  # a fraction, an interval
@@ -146,7 +147,7 @@ def entry_page(case, entry, titles, folder, quick):
     files = " · ".join(element("a", path.name, href=path.name) for path in sorted(folder.iterdir())
                        if path.suffix in (".json", ".csv"))
     facts = [f"In the paper: {html_of(entry['paper'])}."] if entry["paper"] and "beyond" not in entry["paper"] else []
-    command = element("code", f"python3 validation/{case}/run.py{' --quick' * quick}")
+    command = element("code", f"python3 {' '.join(script(case))}{' --quick' * quick}")
     facts += [f"Claims: {count(entry, 'holds')} hold, {failures(entry)} fail.",
               f"Made in {entry['seconds']:.0f} s by {command}", f"Numbers: {files or 'none'}"]
     way = links(titles, case)

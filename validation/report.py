@@ -19,7 +19,7 @@ import threading
 import time
 
 import pages
-from harness import ROOT, parser
+from harness import ROOT, parser, script
 
 CASES = ("paths", "averages", "points", "spectra", "correlation_time", "laplace", "durations",
          "extrapolation", "limit", "cost", "scan", "effects", "weakening", "noises", "queues", "chains", "slips",
@@ -45,8 +45,9 @@ class Progress:
 def made(case, arguments, progress):
     """Runs a case; its entry."""
     folder = arguments.folder / case
-    words = [sys.executable, str(ROOT / "validation" / case / "run.py"), "--program",
-             str(arguments.program), "--report", str(folder)] + ["--quick"] * arguments.quick
+    file, *name = script(case)
+    words = [sys.executable, str(ROOT / file), *name, "--program", str(arguments.program), "--report", str(folder),
+             *["--quick"] * arguments.quick]
     progress.tell(f"{case} begins")
     (folder / "entry.json").unlink(missing_ok=True)
     done = subprocess.run(words, capture_output=True, text=True)

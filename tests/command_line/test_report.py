@@ -215,7 +215,7 @@ class Pages(Case):
         text = page.path.read_text()
         for words in ("Why &lt;b&gt; is no tag.", "<figcaption><b>Table 1.</b>Numbers</figcaption>",
                       "<figcaption><b>Figure 1.</b>The", '<td class="number">-1e-3</td>', "largest 2, allowed 4",
-                      "&amp; more", "validation/one/run.py --quick"):
+                      "&amp; more", "validation/paper.py one --quick"):
             self.assertIn(words, text)
         self.assertEqual(page.images[0][0], {"src": "a.png", "alt": 'The "first" picture, E[V^2] > 0',
                                              "width": "1000", "height": "500"})
@@ -243,7 +243,10 @@ class Pages(Case):
         folders = {path.parent.name for path in scripts if "Entry(" in path.read_text()}
         self.assertEqual(folders - set(report.CASES), {"benchmark"})
         for name in report.CASES:
-            doc = ast.get_docstring(ast.parse((SOURCES / "validation" / name / "run.py").read_text()))
+            file, *function = harness.script(name)
+            tree = ast.parse((SOURCES / file).read_text())
+            node = next(node for node in tree.body if getattr(node, "name", "") in function) if function else tree
+            doc = ast.get_docstring(node)
             self.assertGreater(len(" ".join(entry.about(doc))), 150, name)
 
 
