@@ -397,6 +397,9 @@ std::span<const std::pair<const char*, const char*>> forms() {
        "functions of the state, separated by semicolons: 1, x, v, v^2, |v|, stick, slide, "
        "|x|<=mu_s, or formulas in x, y, v, mu_s and mu_d such as \"x*v; abs(v) > 0.5\", with y = "
        "sign(v), 0 at rest"},
+      {"terms",
+       "numbers separated by commas, in groups separated by semicolons, such as \"0.8,0.5; "
+       "0.2,3,10\""},
       {"state", "s+ or s-, where a sliding phase starts; x,v with x a noise level; rest, V = 0 and "
                 "X in its stationary distribution; stationary, the stationary distribution"}};
   return all;

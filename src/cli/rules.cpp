@@ -110,6 +110,39 @@ class Rules {
     refuse({"plan"}, r_.plan_only && study_, "predicts one run, not a study", "leave -study out");
   }
 
+  // What asks for levels where there are none.
+  void of_continuous_paths() {
+    if (!r_.scene.noise.gaussian || !settings_.sound()) return;
+    const std::string noise = "-noise " + r_.scene.noise.name;
+    report("route", r_.method.route != Route::excursion || r_.method.scheme != Scheme::hp,
+           "needs a noise of levels, which " + noise + " has not", "leave it out");
+    report("study", study_, "needs a noise of levels, which " + noise + " has not",
+           "leave it out, or take -noise ou");
+    const auto of_levels =
+        wanted([](const auto& entry) { return entry.of_levels || entry.of_one_run; });
+    report("quantities", !of_levels.empty(),
+           fmt::format("asks for {}, which are found for noises of levels alone, and {} has none",
+                       enumerate(of_levels, "and"), noise),
+           "leave that out, or take -noise ou or narrow_band");
+    const bool starts = std::ranges::any_of(cases::entries(), [this](const auto* entry) {
+      return q_.wants(entry->quantity) && entry->takes("start");
+    });
+    report("start", starts && q_.start.kind == model::Start::Kind::state,
+           fmt::format("is one level, and {} has none", noise),
+           "add -start rest or -start stationary");
+    if (!r_.scene.meant().starts_at_balance()) return;
+    const std::string why = "mu_d = mu_s, where noise of continuous paths brings bodies to rest "
+                            "infinitely often at once";
+    const auto of_phases = wanted(
+        [](const auto& entry) { return entry.of_phases && entry.quantity != Quantity::sticking; });
+    report("quantities", !of_phases.empty(),
+           fmt::format("asks for {}, but {}", enumerate(of_phases, "and"), why),
+           "leave that out, or take a smaller -mu_d");
+    if (q_.wants(Quantity::sticking)) {
+      r_.warnings.push_back("mean durations are left out: " + why + ", so that they are 0");
+    }
+  }
+
   // What the quantities need, or exclude.
   void needs() {
     using enum Quantity;
@@ -321,6 +354,7 @@ void check_rules(Settings& settings, Request& request) {
   rules.of_other_effects();
   rules.unused();
   rules.conflicts();
+  rules.of_continuous_paths();
   rules.needs();
 }
 

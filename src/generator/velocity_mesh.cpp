@@ -68,7 +68,7 @@ namespace {
 bool damps_fast_waves(const model::Process& process) {
   constexpr double jumps = 20;  // while the noise forgets itself
   const auto& noise = process.noise;
-  return !noise.table && noise.rate() * noise.correlation_time() > jumps;
+  return (!noise.table || !noise.has_levels()) && noise.rate() * noise.correlation_time() > jumps;
 }
 
 // The largest frequency whose waves elements follow.
@@ -115,7 +115,8 @@ double end_of_thinnest_waves(const model::Process& process, double gap) {
 // damping is so strong that graded elements do, and waves much faster than the noise are small
 // beside the smooth part, so that they are followed up to highest_followed() only.
 double wave_width(const model::Process& process, double omega, double gap, double v) {
-  if (process.noise.table) return wave_width_of_table(process, omega, v);
+  if (process.noise.table && process.noise.has_levels())
+    return wave_width_of_table(process, omega, v);
   const double rate = process.noise.rate();
   const double slowest = v < end_of_thinnest_waves(process, gap)
                              ? gap
@@ -132,7 +133,8 @@ bool has_unfollowed_waves(const model::Process& process, double omega) {
 bool has_waves(const model::Process& process, double omega) {
   const auto& noise = process.noise;
   double slowest = 4 * noise.rate();
-  for (int i = noise.lowest(); noise.table && i <= noise.highest(); ++i) {
+  const bool own = noise.table && noise.has_levels();
+  for (int i = noise.lowest(); own && i <= noise.highest(); ++i) {
     slowest = std::min(slowest, model::change_rates(noise, i).most);
   }
   return omega > slowest;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdlib>
 #include <numeric>
 #include <stdexcept>
@@ -292,12 +293,139 @@ TridiagonalEigen::TridiagonalEigen(std::vector<double> diagonal, std::vector<dou
   expect_success(info, "the eigenvalues of a tridiagonal matrix do not converge");
 }
 
+namespace {
+
+using Column = std::vector<double>;
+
+/// Polynomials p_0 ... p_(n-1), orthonormal for normalised weights, with their recurrence
+///
+///   b_(j+1) p_(j+1) = (t - a_j) p_j - b_j p_(j-1).
+class OrthogonalPolynomials {
+ public:
+  OrthogonalPolynomials(std::span<const double> t, std::span<const double> w, int size)
+      : t_(t), w_(w), off_diagonal(1, 0.0) {
+    value.emplace_back(t.size(), 1.0);
+    for (int j = 0; j < size; ++j) {
+      Column next(t.size());
+      for (std::size_t i = 0; i < next.size(); ++i) next[i] = t[i] * value[j][i];
+      diagonal.push_back(product(next, value[j]));
+      if (j + 1 == size) break;
+      for (int pass = 0; pass < 2; ++pass) orthogonalise(next);
+      const double norm = std::sqrt(product(next, next));
+      for (double& entry : next) entry /= norm;
+      off_diagonal.push_back(norm);
+      value.push_back(std::move(next));
+    }
+  }
+
+  // p_j(t_(i+1)) - p_j(t_i), by the differences of the recurrence.
+  [[nodiscard]] std::vector<Column> steps() const {
+    const std::size_t count = t_.size() - 1, size = value.size();
+    std::vector<Column> step(size, Column(count, 0.0));
+    for (std::size_t j = 0; j + 1 < size; ++j) {
+      for (std::size_t i = 0; i < count; ++i) {
+        const double before = j == 0 ? 0 : off_diagonal[j] * step[j - 1][i];
+        step[j + 1][i] =
+            ((t_[i + 1] - diagonal[j]) * step[j][i] + (t_[i + 1] - t_[i]) * value[j][i] - before) /
+            off_diagonal[j + 1];
+      }
+    }
+    return step;
+  }
+
+ private:
+  std::span<const double> t_, w_;
+
+ public:
+  std::vector<Column> value;  // p_j(t_i)
+  Column diagonal, off_diagonal;
+
+ private:
+  [[nodiscard]] double product(const Column& x, const Column& y) const {
+    double sum = 0;
+    for (std::size_t i = 0; i < x.size(); ++i) sum += w_[i] * x[i] * y[i];
+    return sum;
+  }
+
+  void orthogonalise(Column& next) const {
+    for (const Column& p : value) {
+      const double part = product(next, p);
+      for (std::size_t i = 0; i < next.size(); ++i) next[i] -= part * p[i];
+    }
+  }
+};
+
+// Points and weights scaled such that neither overflows: t in [-1, 1], weights of sum 1.
+Column scaled(std::span<const double> x, double shift, double factor) {
+  Column result;
+  for (double value : x) result.push_back((value - shift) * factor);
+  return result;
+}
+
+// Rows of sum_j p_j(x) vector_jl scale_l.
+std::vector<double> combined(const std::vector<Column>& p, const Matrix<double>& vectors,
+                             const Column& scale) {
+  const std::size_t rows = p.front().size();
+  const int n = vectors.rows();
+  std::vector<double> result(rows * p.size(), 0.0);
+  for (std::size_t i = 0; i < rows; ++i) {
+    for (int j = 0; j < n; ++j) {
+      for (int l = 0; l < n; ++l) result[i * n + l] += p[j][i] * vectors(j, l) * scale[l];
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+GaussRule::GaussRule(std::span<const double> points, std::span<const double> weights, int size) {
+  if (size < 1 || points.size() != weights.size() ||
+      points.size() <= static_cast<std::size_t>(size)) {
+    throw std::invalid_argument("a Gauss rule needs more points than nodes");
+  }
+  double total = 0;
+  for (double w : weights) total += w;
+  const double middle = (points.front() + points.back()) / 2;
+  const double half = (points.back() - points.front()) / 2;
+  const Column t = scaled(points, middle, 1 / half), w = scaled(weights, 0, 1 / total);
+  const OrthogonalPolynomials p(t, w, size);
+  TridiagonalEigen eigen(p.diagonal, {p.off_diagonal.begin() + 1, p.off_diagonal.end()});
+  node = std::move(eigen.value);
+  // p_0 = 1, so that the first entry of an eigenvector is the root of its weight.
+  Column root(node.size());
+  for (int l = 0; l < size; ++l) {
+    root[l] = eigen.vectors(0, l);
+    weight.push_back(total * root[l] * root[l]);
+    node[l] = middle + half * node[l];
+  }
+  cardinal = combined(p.value, eigen.vectors, root);
+  step = combined(p.steps(), eigen.vectors, root);
+}
+
 RateElimination::RateElimination(std::vector<double> killing, const std::vector<Rate>& rates)
     : killing_(std::move(killing)) {
   for (const auto& [from, to, value] : rates) band_ = std::max(band_, std::abs(to - from));
   rates_.resize(killing_.size() * (2 * static_cast<std::size_t>(band_) + 1));
   for (const auto& [from, to, value] : rates) entry(from, to) += value;
-  factor();
+  const auto negative = [](double rate) { return rate < 0; };
+  if (std::ranges::none_of(rates_, negative) && std::ranges::none_of(killing_, negative)) {
+    factor();
+  } else if (std::ranges::any_of(killing_, [](double rate) { return rate != 0; })) {
+    lu_.emplace(matrix());
+  }
+}
+
+// K - Q.
+Matrix<double> RateElimination::matrix() const {
+  Matrix<double> a(size(), size());
+  for (int i = 0; i < size(); ++i) {
+    a(i, i) += killing_[i];
+    for (int k = std::max(i - band_, 0); k <= last_of(i); ++k) {
+      a(i, k) -= entry(i, k);
+      a(i, i) += entry(i, k);
+    }
+  }
+  return a;
 }
 
 int RateElimination::last_of(int row) const { return std::min(row + band_, size() - 1); }
@@ -331,6 +459,10 @@ std::vector<double> RateElimination::occupation(std::span<const double> entry_la
     throw std::invalid_argument("a distribution of a wrong size");
   }
   std::vector<double> m(entry_law.begin(), entry_law.end());
+  if (lu_) {
+    lu_->solve(m, true);
+    return m;
+  }
   for (int i = 0; i < size(); ++i) {
     for (int k = i + 1; k <= last_of(i); ++k) m[k] += m[i] * entry(i, k) / pivot_[i];
   }
@@ -343,6 +475,10 @@ std::vector<double> RateElimination::occupation(std::span<const double> entry_la
 
 std::vector<double> RateElimination::integral(std::vector<double> f) const {
   if (f.size() != killing_.size()) throw std::invalid_argument("a function of a wrong size");
+  if (lu_) {
+    lu_->solve(f, false);
+    return f;
+  }
   for (int i = 0; i < size(); ++i) {
     for (int k = i + 1; k <= last_of(i); ++k) f[k] += entry(k, i) * f[i] / pivot_[i];
   }
@@ -357,6 +493,12 @@ std::vector<double> RateElimination::stationary() const {
   std::vector<double> p(killing_.size(), 0.0);
   if (p.empty()) return p;
   p.back() = 1;
+  if (pivot_.empty()) {
+    auto a = matrix();
+    for (int i = 0; i < size(); ++i) a(i, size() - 1) = 1;
+    LuFactors<double>(std::move(a)).solve(p, true);
+    return p;
+  }
   for (int i = size() - 2; i >= 0; --i) {
     for (int k = i + 1; k <= last_of(i); ++k) p[i] += p[k] * entry(k, i);
     p[i] /= pivot_[i];

@@ -127,6 +127,30 @@ LevelTable::LevelTable(const std::vector<double>& given,
   find_tails();
 }
 
+LevelTable LevelTable::of(const Projection& projection) {
+  LevelTable table;
+  table.jumps_.resize(projection.x.size());
+  table.probability_ = projection.probability;
+  table.peak_intensity_ = projection.peak_intensity;
+  table.variance_ = projection.deviation * projection.deviation;
+  table.intensity_ = projection.intensity;
+  table.rate_ = projection.rate;
+  table.step_ = projection.step;
+  table.even_ = projection.even;
+  table.reversed_ = projection.reversed;
+  table.continuous_ = true;
+  for (double x : projection.x) table.levels_.push_back({x, 0, 0});
+  for (const auto& [from, to, rate] : projection.transitions) {
+    table.jumps_[from].push_back({static_cast<int>(to), rate});
+    (to > from ? table.levels_[from].up : table.levels_[from].down) += rate;
+  }
+  const auto& p = table.probability_;
+  table.lowest_ = -places_below_zero(table.levels_);
+  table.mode_ = table.lowest_ + static_cast<int>(std::ranges::max_element(p) - p.begin());
+  table.upper_tail_ = table.lower_tail_ = std::max(table.intensity_, table.peak_intensity_);
+  return table;
+}
+
 void LevelTable::find_moments() {
   lowest_ = -places_below_zero(levels_);
   step_ = kInfinity;

@@ -104,6 +104,7 @@ struct Block {
 }  // namespace
 
 ChangeRates change_rates(const NoiseChain& chain, int i) {
+  if (!chain.has_levels()) return {kInfinity, kInfinity};
   const Block block(chain, i);
   ChangeRates rates{kInfinity, 0};
   for (int from = block.first; from <= block.last; ++from) {
@@ -117,6 +118,9 @@ ChangeRates change_rates(const NoiseChain& chain, int i) {
 Unchanged unchanged(const NoiseChain& chain, int i, double time) {
   const Block block(chain, i);
   const int count = block.last - block.first + 1;
+  if (!chain.has_levels()) {
+    return {block.first, std::vector<double>(static_cast<std::size_t>(count), 0.0)};
+  }
   if (count == 1) return {i, {std::exp(-chain.rate(i) * time)}};
   linalg::Matrix<double> killed(count, count);
   for (int from = block.first; from <= block.last; ++from) {

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
+#include <numbers>
 #include <numeric>
 #include <set>
 #include <span>
@@ -222,6 +224,15 @@ double stick_density_at_zero(const model::Process& process, const std::vector<do
 void append_noise_distribution(const model::Process& process, Results& results) {
   const auto& noise = process.noise;
   const double mu_s = process.friction.mu_s;
+  if (!noise.has_levels()) {
+    const double sigma = noise.standard_deviation(),
+                 within = std::erf(mu_s / sigma / std::numbers::sqrt2);
+    results.push_back(
+        scalar(cases::kPWithin, within, std::numeric_limits<double>::epsilon() * within));
+    results.push_back(
+        scalar(cases::kEX2, sigma * sigma, std::numeric_limits<double>::epsilon() * sigma * sigma));
+    return;
+  }
   const auto moments = model::noise_moments(noise, noise.first_from(-mu_s), noise.last_up_to(mu_s));
   const double rounding = model::rounding_of_sums(noise);
   results.push_back(scalar(cases::kPWithin, moments.within, rounding * moments.within));
@@ -239,6 +250,12 @@ void leave_out_missing_side(const model::Process& process, Results& results) {
     return (!process.starts_upwards() && of_plus.contains(word)) ||
            (!process.starts_downwards() && of_minus.contains(word));
   });
+}
+
+void leave_out_uncountable(const model::Process& process, Results& results) {
+  if (!process.starts_at_balance()) return;
+  static const std::set<std::string> durations{"mean_stick", "mean_slide", "mean_excursion"};
+  std::erase_if(results, [](const Result& result) { return durations.contains(result.key); });
 }
 
 std::vector<double> marginal_of_noise(const generator::Discretisation& discretisation,

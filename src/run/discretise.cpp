@@ -149,6 +149,11 @@ namespace {
 
 void set_levels(const model::Scene& scene, double tolerance, const generator::Rates& rates,
                 Resolution& r) {
+  if (scene.noise.gaussian) {
+    r.levels = std::max(r.degree, 2);
+    r.table_levels = scene.process(r.levels).noise.count();
+    return;
+  }
   r.levels = scene.noise_levels.value_or(levels_for(scene, tolerance, rates));
   if (scene.noise.table) r.table_levels = scene.process(r.levels).noise.count();
 }

@@ -37,6 +37,9 @@ constexpr int kLeastDegreeOfErrors = 10;
 // Under the levels of a table errors fall in uneven steps, of which the change before tells more,
 // and the other family of means: all changes of one are small at once now and then.
 constexpr double kEarlierOfTables = 4, kOtherFamilyOfTables = 0.6;
+// Of projections modes are added: errors fall threefold a step where a noise turns often before it
+// is damped, and fiftyfold elsewhere, so that the first step tells little.
+constexpr double kLastOfProjections = 2.5, kEarlierOfProjections = 0.2;
 // Where elements move from level to level changes tell less.
 constexpr double kOnOtherElements = 1.4;
 // Where friction weakens errors fall as they otherwise do so many degrees higher.
@@ -116,6 +119,9 @@ RefinementSequence::RefinementSequence(const cases::Case& given)
   tail_counts_ =
       !given.question.observables.empty() || given.question.any(&cases::Entry::weighs_tail);
   last_ = method_.fixed() ? 1 : free_refinement_levels();
+  if (const auto& gaussian = scene_.noise.gaussian) {
+    while (last_ > 1 && !gaussian->fits(scene_.thresholds(), degree(last_))) --last_;
+  }
 }
 
 int RefinementSequence::free_refinement_levels() const {
@@ -205,7 +211,10 @@ ErrorPerChange RefinementSequence::error_per_change(int n) const {
     factor.last *= degrees;
     factor.earlier *= degrees;
     if (!waves_.empty()) factor.waves_from = std::ranges::min(waves_);
-    if (table_) {
+    if (scene_.noise.gaussian) {
+      factor.last *= kLastOfProjections;
+      factor.earlier *= kEarlierOfProjections;
+    } else if (table_) {
       factor.earlier *= kEarlierOfTables;
       factor.of_other_family = kOtherFamilyOfTables;
     }
@@ -236,7 +245,10 @@ Solved evaluated(MPI_Comm comm, const cases::Case& given, const Resolution& reso
   }
   solved.evaluation = evaluate(problem);
   quantities::leave_out_missing_side(problem.discretisation.process, solved.evaluation.results);
-  const double rounding = model::rounding_of_sums(problem.discretisation.process.noise);
+  quantities::leave_out_uncountable(problem.discretisation.process, solved.evaluation.results);
+  // Of nodes tied together where bodies start, see GaussianNoise::projected().
+  const double tied = problem.discretisation.process.noise.has_levels() ? 0 : 2e-7;
+  const double rounding = tied + model::rounding_of_sums(problem.discretisation.process.noise);
   require_least_error(rounding + resolution.truncation, solved.evaluation.results);
   step.checks = std::move(solved.evaluation.checks);
   step.seconds = linalg::wall_seconds() - start;

@@ -29,6 +29,40 @@ class Noises(Case):
             self.refuse(*TELEGRAPH, option, "-1", message=(f"{option} = -1", "(0, inf)"))
         self.refuse("-noise", "telegrah", message=("-noise = telegrah", "did you mean telegraph?"))
 
+    # By a finite element program of its own, with numbers of polynomials and meshes of its own, and
+    # for one term by the limit of small steps of -noise ou.
+    GAUSSIAN = (
+        (("1,1", "-mu_d", "0.25", "-accuracy", "1e-5"),
+         {"P_stick": 0.12059704171, "mean_slide": 3.08129985, "mean_stick": 0.42255446, "E_V2": 0.309715092}),
+        (("1,1", "-mu_d", "1", "-accuracy", "1e-4"),
+         {"P_stick": 0.516134, "E_V2": 0.04962230, "E_absV": 0.09979207}),
+        (("1,1; 0.64,5", "-mu_d", "0.5", "-accuracy", "1e-2"),
+         {"P_stick": 0.0849877, "mean_slide": 1.178504, "E_V2": 0.2589338, "E_XV": 0.4345693}),
+        (("1,0.5,1", "-mu_d", "0.25", "-accuracy", "1e-2"),
+         {"P_stick": 0.1640417, "mean_slide": 3.35641, "mean_stick": 0.658634, "E_V2": 0.2965518}))
+
+    def test_gaussian_noise(self):
+        for options, right in self.GAUSSIAN:
+            summary = self.summary("-noise", "gaussian", "-covariance", *options, "-quantities", "sticking,moments")
+            for key, value in right.items():
+                found = summary["results"][key]
+                self.assertLess(abs(found["value"] - value), found["error"] + 5e-7 * value, (options, key))
+                self.assertLess(found["error"], float(options[-1]) * value)
+            self.assertEqual(summary["results"]["E_V"]["value"], 0)
+
+    def test_what_gaussian_noise_takes(self):
+        noise = ("-noise", "gaussian", "-covariance")
+        self.refuse("-noise", "gaussian", message=("-noise = gaussian: needs -covariance",))
+        self.refuse(*noise, "1", message=("-covariance = 1: has 1 numbers", "amplitude,decay"))
+        self.refuse(*noise, "1,1,x", message=('has "x" in the place of a number',))
+        self.refuse(*noise, "1,1; 1,-2", message=("term 2: decay = -2 must be positive",))
+        self.refuse(*noise, "1,1; -0.9,3", message=("power spectral density", "must not be negative"))
+        self.refuse(*noise, "1,1", "-route", "lambda", message=("-route = lambda", "needs a noise of levels"))
+        self.refuse(*noise, "1,1", "-quantities", "entry_law", message=("asks for entry_law", "gaussian has none"))
+        self.refuse(*noise, "1,1", "-mu_d", "0.5", "-quantities", "expectation", "-observable", "v", "-time", "1",
+                    message=("-start = s+: is one level",))
+        self.refuse(*noise, "1,1", "-quantities", "slip", "-distance", "1", message=("asks for slip", "mu_d = mu_s"))
+
     def test_files_that_cannot_be_read(self):
         for name in ("none.csv", "."):  # a folder is no file
             self.refuse("-noise", "file", "-noise_file", name,

@@ -71,6 +71,7 @@ inline constexpr Entry kDisplacementTransform{
     .options = "time, start",
     .arguments = kDisplacementTransformArguments,
     .rows = kDisplacementTransformRows,
+    .of_levels = true,
     .weighs_tail = true,
     .both_branches = true};
 
@@ -141,6 +142,7 @@ inline constexpr Entry kDisplacementDistribution{
     .arguments = kDisplacementDistributionArguments,
     .rows = kDisplacementDistributionRows,
     .usual_accuracy = 0.01,
+    .of_levels = true,
     .weighs_tail = true,
     .both_branches = true};
 

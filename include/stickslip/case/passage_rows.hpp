@@ -131,6 +131,7 @@ inline constexpr Entry kPassageTimeTransform{
     .routes = {Route::excursion, Route::monte_carlo},
     .options = "lambda, velocity, start, passage",
     .rows = kPassageTransformRows,
+    .of_levels = true,
     .weighs_tail = true,
     .both_branches = true};
 inline constexpr Entry kPassageTimeDistribution{
@@ -144,6 +145,7 @@ inline constexpr Entry kPassageTimeDistribution{
     .rows = kPassageDistributionRows,
     .degrees_besides = 3,
     .usual_accuracy = 1e-4,
+    .of_levels = true,
     .weighs_tail = true,
     .both_branches = true};
 

@@ -29,6 +29,7 @@ inline constexpr Entry kSensitivity{
     .routes = {Route::excursion},
     .rows = kSensitivityRows,
     .of_phases = true,
+    .of_levels = true,
     .without_system = true,
     .without_limit = true};
 

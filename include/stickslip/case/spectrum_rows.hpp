@@ -274,7 +274,8 @@ inline constexpr Entry kResolvent{
     .routes = {Route::excursion, Route::monte_carlo},
     .options = "lambda, observable",
     .rows = kResolventRows,
-    .of_phases = true};
+    .of_phases = true,
+    .of_levels = true};
 
 // The quantity relaxation: leading eigenvalues of the generator, by SLEPc.
 

@@ -224,6 +224,7 @@ inline constexpr Entry kEntryLaw{
     .rows = kEntryLawRows,
     .degrees_besides = 2,
     .of_phases = true,
+    .of_levels = true,
     .without_limit = true};
 
 }  // namespace stickslip::cases

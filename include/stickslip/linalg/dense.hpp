@@ -5,6 +5,7 @@
 #include <cmath>
 #include <complex>
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <type_traits>
 #include <utility>
@@ -186,6 +187,30 @@ struct TridiagonalEigen {
   TridiagonalEigen(std::vector<double> diagonal, std::vector<double> beside);
 };
 
+// Gauss quadrature for discrete measures, and interpolation at its nodes.
+
+/// The rule of n nodes for the weights w_i > 0 on the points x_1 < ... < x_m, m > n: exact for
+/// polynomials of degree 2n - 1. The functions l_l of degree n - 1 with l_l(node_k) = delta_lk are
+/// orthogonal in the scalar product of the weights, and their squares have the sums weight_l.
+///
+/// Orthogonal polynomials by Stieltjes' procedure with reorthogonalisation, nodes and weights from
+/// the eigenvectors of their Jacobi matrix (Golub and Welsch). Local. O(m n^2).
+class GaussRule {
+ public:
+  /// Throws std::invalid_argument unless 0 < size < points.size() == weights.size().
+  GaussRule(std::span<const double> points, std::span<const double> weights, int size);
+
+  [[nodiscard]] int size() const { return static_cast<int>(node.size()); }
+
+  std::vector<double> node;    ///< rising
+  std::vector<double> weight;  ///< their sum is that of the w_i
+  /// l_l(x_i), m x n by rows.
+  std::vector<double> cardinal;
+  /// l_l(x_{i+1}) - l_l(x_i), (m - 1) x n by rows, from a recurrence of its own: no digits cancel
+  /// where points are dense.
+  std::vector<double> step;
+};
+
 // Chains given by rates: times, integrals and stationary probabilities without subtraction.
 
 /// K - Q on the states 0 ... n-1 of a chain that jumps from state i to state j at the rate Q_ij and
@@ -197,6 +222,9 @@ struct TridiagonalEigen {
 /// they are asked about is >= 0. States are eliminated from the first one up: what is left on i,
 /// i+1, ... is the chain watched there. Where jumps lead over at most b states memory is O(n b) and
 /// time O(n b^2). Local.
+///
+/// Rates between nodes of a projection may be negative. Then LU factors of the matrix, of which the
+/// diagonal is still the sum of all rates of leaving, take the place of the elimination.
 class RateElimination {
  public:
   struct Rate {
@@ -227,8 +255,11 @@ class RateElimination {
   }
   [[nodiscard]] int last_of(int row) const;
 
+  [[nodiscard]] Matrix<double> matrix() const;
+
   int band_ = 0;
   std::vector<double> killing_, rates_, pivot_;
+  std::optional<LuFactors<double>> lu_;
 };
 
 }  // namespace stickslip::linalg

@@ -38,6 +38,17 @@ struct Transition {
 [[nodiscard]] std::vector<bool> reached_from(std::size_t first, std::size_t states,
                                              const std::vector<Transition>& transitions);
 
+/// Nodes that stand for a noise of continuous paths. Rates between them may have any sign.
+struct Projection {
+  std::vector<double> x = {}, probability = {};  ///< rising; positive, of sum 1
+  std::vector<Transition> transitions = {};
+  double deviation = 0;                      ///< of the noise itself [force]
+  double intensity = 0, peak_intensity = 0;  ///< at the frequency 0, and the largest
+  double step = 0;                           ///< of the finest element [force]
+  double rate = 0;                           ///< with which step^2 rate is the diffusivity of X
+  bool even = false, reversed = false;       ///< as LevelTable has them
+};
+
 /// A chain that reaches each of its levels from each other one, by jumps to the neighbours or,
 /// where it is made of transitions, by jumps of any length. Levels are numbered by rising x, which
 /// several may share; level 0 is the one nearest to x = 0, the upper one of two. Immutable.
@@ -57,6 +68,8 @@ class LevelTable {
   /// jumps are to neighbours it is the chain above. O(states band^2), jumps leading over at most
   /// `band` levels. Throws UnfitTable, whose rows are states.
   LevelTable(const std::vector<double>& x, const std::vector<Transition>& transitions);
+  /// Nodes, which are no levels of a chain: only operators and what is solved with them know them.
+  [[nodiscard]] static LevelTable of(const Projection& projection);
 
   [[nodiscard]] int lowest() const { return lowest_; }
   [[nodiscard]] int highest() const { return lowest_ + static_cast<int>(levels_.size()) - 1; }
@@ -65,6 +78,8 @@ class LevelTable {
     return levels_[static_cast<std::size_t>(place)];
   }
 
+  /// Whether these are nodes of a noise of continuous paths.
+  [[nodiscard]] bool continuous() const { return continuous_; }
   /// Whether all jumps are to neighbours.
   [[nodiscard]] bool neighbours_only() const { return jumps_.empty(); }
   /// Calls visit(level, rate) for the jumps from a level, from the lowest one up.
@@ -123,6 +138,7 @@ class LevelTable {
   [[nodiscard]] LevelTable mirrored() const;
 
  private:
+  LevelTable() = default;
   // A force that slows bodies, and the decay theta of their density under it.
   struct Decay {
     double force, theta;
@@ -142,7 +158,7 @@ class LevelTable {
   int lowest_ = 0, mode_ = 0;
   double upper_tail_ = 0, lower_tail_ = 0;
   double mean_ = 0, variance_ = 0, intensity_ = 0, rate_ = 0, step_ = 0;
-  bool even_ = true, reversed_ = true;
+  bool even_ = true, reversed_ = true, continuous_ = false;
 };
 
 /// Levels that are no such chain: what() says why, row() in which of them, from 0; in none
@@ -183,6 +199,8 @@ struct NoiseChain {
   [[nodiscard]] int count() const { return highest() - lowest() + 1; }
   /// x_i [force].
   [[nodiscard]] double level(int i) const { return table ? table->at(i).x : i * delta; }
+  /// Whether the levels are those of the noise, and not nodes of a process of continuous paths.
+  [[nodiscard]] bool has_levels() const { return !table || !table->continuous(); }
   /// Whether all jumps are to neighbouring levels.
   [[nodiscard]] bool neighbours_only() const { return !table || table->neighbours_only(); }
   /// Calls visit(level, rate) for the jumps from level i, from the lowest one up.

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "stickslip/model/drag.hpp"
+#include "stickslip/model/gaussian.hpp"
 #include "stickslip/model/noise_chain.hpp"
 
 namespace stickslip::model {
@@ -86,6 +87,13 @@ struct Process {
   [[nodiscard]] bool sticks() const { return lowest_static() <= highest_static(); }
   /// Whether bodies that slide upwards do so for ever, as friction exceeds the force on no level.
   [[nodiscard]] bool moves_on() const { return net_force(noise.lowest()) >= 0; }
+  /// Whether noise of continuous paths lets bodies slide where friction balances it: each that starts
+  /// comes to rest infinitely often at once, so that slides cannot be counted, and mean durations
+  /// are 0.
+  [[nodiscard]] bool starts_at_balance() const {
+    const auto at_once = [](const Friction& f) { return f.at_rest() == f.mu_s; };
+    return !noise.has_levels() && (at_once(friction) || at_once(friction.mirrored()));
+  }
   /// Whether bodies stick on level i.
   [[nodiscard]] bool sticks(int i) const { return lowest_static() <= i && i <= highest_static(); }
   /// g + E[X]: what drives bodies over long times.
@@ -160,7 +168,8 @@ struct Start {
 
 // Levels of a noise that have one force: jumps between them move no body otherwise.
 
-/// The rates at which levels with the force of level i are left for other forces [1/time].
+/// The rates at which levels with the force of level i are left for other forces [1/time]; infinite
+/// where paths are continuous.
 struct ChangeRates {
   double least, most;
 };
@@ -210,6 +219,8 @@ struct NoiseChoice {
   std::string name = "ou";                       ///< empty where nothing asks for noise
   std::optional<double> deviation = {};          ///< of "ou", if it has its own [force]
   std::shared_ptr<const LevelTable> table = {};  ///< the levels of all but "ou"
+  /// A noise of continuous paths, of which `table` is a projection for the friction of its scene.
+  std::shared_ptr<const GaussianNoise> gaussian = {};
   /// The power spectral density of the process that the chain stands for, over omega, if it is
   /// known.
   std::function<double(double)> target = {};
@@ -232,22 +243,33 @@ struct Scene {
   bool limits_speed = false;                      ///< v_max is part of the model: no body is faster
 
   [[nodiscard]] bool symmetric() const { return process(1).symmetric(); }
+  /// The order of projections where none is chosen by an accuracy.
+  static constexpr int kMeantOrder = 5;
   /// The range that is meant when noise_levels is open: full_range(), or that of the table.
   [[nodiscard]] int full_levels() const {
+    if (noise.gaussian) return kMeantOrder;
     return noise.table ? std::max(-noise.table->lowest(), noise.table->highest())
                        : full_range(tau, delta, noise.deviation);
   }
-  /// The process on the noise levels |i| <= levels and those next to rest.
+  /// The process on the noise levels |i| <= levels and those next to rest; of a noise of continuous
+  /// paths on the nodes of the order `levels`.
   [[nodiscard]] Process process(int levels) const {
     Process all{{tau, delta, levels, noise.deviation, noise.table},
                 friction,
                 with_weakening(drag, friction),
                 bias};
-    if (noise.table && levels < full_levels()) {
+    if (noise.gaussian) {
+      all.noise.table = noise.gaussian->projected(thresholds(), std::max(levels, 2));
+    } else if (noise.table && levels < full_levels()) {
       all.noise.table = std::make_shared<const LevelTable>(noise.table->within(
           std::min(-levels, all.lowest_static() - 1), std::max(levels, all.highest_static() + 1)));
     }
     return all;
+  }
+  [[nodiscard]] Thresholds thresholds() const {
+    const Friction other = friction.mirrored();
+    return {{-other.mu_s - bias, friction.mu_s - bias},
+            {-other.at_rest() - bias, friction.at_rest() - bias}};
   }
   /// The process that is meant: on noise_levels if fixed, else on the full range.
   [[nodiscard]] Process meant() const { return process(noise_levels.value_or(full_levels())); }

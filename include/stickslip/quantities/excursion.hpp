@@ -93,6 +93,9 @@ void append_noise_sensitivity(const model::Process& process, Results& results);
 /// Leaves out the results that are about excursions from s+ or s- if the noise has no such level.
 void leave_out_missing_side(const model::Process& process, Results& results);
 
+/// Leaves out mean durations where Process::starts_at_balance().
+void leave_out_uncountable(const model::Process& process, Results& results);
+
 /// The stationary distribution of X as the excursion sees it, summed over the grid, from the lowest
 /// level up; with symmetry halved for x and -x.
 [[nodiscard]] std::vector<double> marginal_of_noise(const generator::Discretisation& discretisation,

@@ -8,11 +8,11 @@ namespace stickslip::effects {
 extern const Effect kCoulomb, kStribeck;
 inline constexpr const Effect* kFrictions[] = {&kCoulomb, &kStribeck};
 
-extern const Effect kOrnsteinUhlenbeck, kTelegraph, kNarrowBand, kFilteredNoise, kPeriodic, kPulses,
-    kNoiseFile, kNoiseChain, kNoiseSum;
-inline constexpr const Effect* kNoises[] = {&kOrnsteinUhlenbeck, &kTelegraph, &kNarrowBand,
-                                            &kFilteredNoise,     &kPeriodic,  &kPulses,
-                                            &kNoiseFile,         &kNoiseChain};
+extern const Effect kOrnsteinUhlenbeck, kGaussianNoise, kTelegraph, kNarrowBand, kFilteredNoise,
+    kPeriodic, kPulses, kNoiseFile, kNoiseChain, kNoiseSum;
+inline constexpr const Effect* kNoises[] = {
+    &kOrnsteinUhlenbeck, &kGaussianNoise, &kTelegraph, &kNarrowBand, &kFilteredNoise,
+    &kPeriodic,          &kPulses,        &kNoiseFile, &kNoiseChain};
 
 extern const Effect kLinearDrag, kNoDrag, kCubicDrag, kDragExpression;
 inline constexpr const Effect* kDrags[] = {&kLinearDrag, &kNoDrag, &kCubicDrag, &kDragExpression};

@@ -267,9 +267,11 @@ std::string lattice_note(const model::Scene& scene, const PlaneNoise& noise) {
       "{:g}: "
       "jumps along the drift alone, on states that hold {:.2g} % of the probability, add {:.2g} % "
       "to "
-      "its diffusion; that falls with -delta, now {:g}, and -study delta finds the limit",
+      "its diffusion; that falls with -delta, now {:g}. Without a lattice: -noise gaussian "
+      "-covariance {:.6g},{:.6g},{:.6g},{:.6g}",
       scene.noise.name, lattice.added.size(), deviation, noise.deviation, 100 * one_sided,
-      100 * added, scene.delta);
+      100 * added, scene.delta, noise.deviation * noise.deviation, noise.decay, noise.frequency,
+      noise.sine);
 }
 
 namespace {

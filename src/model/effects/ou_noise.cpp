@@ -174,7 +174,7 @@ const Effect kOrnsteinUhlenbeck{
     .word = "ou",
     .sentence = "the chain of the paper, which tends to the Ornstein-Uhlenbeck process as -delta "
                 "-> 0",
-    .others = {"gaussian", "ornstein_uhlenbeck"},
+    .others = {"ornstein_uhlenbeck"},
     .explained = {"white", "white_noise"},
     .page = "-study tau in docs/white_noise.md",
     .parameters =

@@ -3,10 +3,10 @@
 #include <vector>
 
 #include "../common/catch.hpp"
-#include "stickslip/generator/noise_nodes.hpp"
+#include "stickslip/linalg/dense.hpp"
 
 using namespace stickslip;
-using generator::GaussRule;
+using linalg::GaussRule;
 
 namespace {
 
