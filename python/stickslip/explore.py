@@ -85,12 +85,14 @@ class Explorer:
             slider.label.set_x(-0.06)  # clear of the handle
             slider.on_changed(lambda _, option=option: self.turn(option))
             self.sliders[option] = slider
-        top = 0.374
-        for option, values in self.offered.items():
+        top, bottom, rest = 0.374, 0.052, 0.018  # above the status
+        words = {option: [*values, *{str(scene.get(option, values[0]))}.difference(values)]
+                 for option, values in self.offered.items()}
+        room = (top - bottom - (rest + 0.006) * len(words)) / max(1, sum(map(len, words.values())))
+        for option, values in words.items():
             value = str(scene.get(option, values[0]))
-            values = values if value in values else [*values, value]
             self.choices[option] = self._begun[option] = value
-            height = 0.018 + 0.0225 * len(values)
+            height = rest + min(0.0225, room) * len(values)
             place = self.figure.add_axes((0.225, top - height, 0.1, height))
             top -= height + 0.006
             place.text(0.97, 0.95, option, ha="right", va="top", fontsize=8, color="gray", transform=place.transAxes)

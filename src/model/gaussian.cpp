@@ -250,7 +250,7 @@ struct Special {
 };
 
 // What spans more than a factor of five in the distance to a special point is split there, what is
-// long in the middle.
+// long is cut into equal parts.
 void split_element(const std::vector<Special>& special, double low, double high,
                    std::vector<double>& ends) {
   constexpr double longest = 1.5, ratio = 4, most = 5, enough = 1.5;

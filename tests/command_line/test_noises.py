@@ -52,7 +52,13 @@ class Noises(Case):
 
     def test_what_gaussian_noise_takes(self):
         noise = ("-noise", "gaussian", "-covariance")
-        self.refuse("-noise", "gaussian", message=("-noise = gaussian: needs -covariance",))
+        (self.folder / "terms.csv").write_text("amplitude,decay,frequency,sine\n1,1,0,0\n")
+        by_file = self.summary("-noise", "gaussian", "-covariance_file", "terms.csv", "-quantities", "moments")
+        by_default = self.summary("-noise", "gaussian", "-quantities", "moments")
+        self.assertEqual(by_file["results"], by_default["results"])
+        self.refuse(*noise, "1,1", "-covariance_file", "terms.csv", message=("leave one of them out",))
+        self.refuse("-noise", "gaussian+telegraph", "-covariance", "1,1", "-telegraph_amplitude", "1",
+                    "-telegraph_rate", "1", message=("-noise = gaussian+telegraph: adds chains",))
         self.refuse(*noise, "1", message=("-covariance = 1: has 1 numbers", "amplitude,decay"))
         self.refuse(*noise, "1,1,x", message=('has "x" in the place of a number',))
         self.refuse(*noise, "1,1; 1,-2", message=("term 2: decay = -2 must be positive",))

@@ -87,9 +87,9 @@ struct Process {
   [[nodiscard]] bool sticks() const { return lowest_static() <= highest_static(); }
   /// Whether bodies that slide upwards do so for ever, as friction exceeds the force on no level.
   [[nodiscard]] bool moves_on() const { return net_force(noise.lowest()) >= 0; }
-  /// Whether noise of continuous paths lets bodies slide where friction balances it: each that starts
-  /// comes to rest infinitely often at once, so that slides cannot be counted, and mean durations
-  /// are 0.
+  /// Whether noise of continuous paths lets bodies slide where friction balances it: each that
+  /// starts comes to rest infinitely often at once, so that slides cannot be counted, and mean
+  /// durations are 0.
   [[nodiscard]] bool starts_at_balance() const {
     const auto at_once = [](const Friction& f) { return f.at_rest() == f.mu_s; };
     return !noise.has_levels() && (at_once(friction) || at_once(friction.mirrored()));

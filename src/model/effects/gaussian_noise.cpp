@@ -58,13 +58,14 @@ std::string text_of(const std::vector<model::CovarianceTerm>& terms) {
 }
 
 void read_gaussian(Given& given, model::Scene& scene) {
+  if (scene.noise.name.find('+') != std::string::npos) {
+    return given.refuse("noise", "adds chains, and gaussian noise is none",
+                        "give all Gaussian parts as terms of -covariance, or take -noise ou");
+  }
   const bool by_file = given.has(kTermsFile);
-  if (by_file == given.has(kTerms)) {
-    return given.refuse(
-        by_file ? kTermsFile : "noise",
-        by_file ? fmt::format("gives the covariance, and so does -{}", kTerms)
-                : fmt::format("needs -{}, the covariance of X, or -{}", kTerms, kTermsFile),
-        by_file ? "leave one of them out" : fmt::format("add for example -{} \"1,0.5,2\"", kTerms));
+  if (by_file && given.has(kTerms)) {
+    return given.refuse(kTermsFile, fmt::format("gives the covariance, and so does -{}", kTerms),
+                        "leave one of them out");
   }
   std::vector<model::CovarianceTerm> terms;
   try {
@@ -109,7 +110,7 @@ const Effect kGaussianNoise{
     .sentence = "any Gaussian noise with a rational spectrum, of continuous paths and without "
                 "levels",
     .parameters =
-        {{Option::text_of(kTerms, "terms", "",
+        {{Option::text_of(kTerms, "terms", "1,1",
                           "covariance C(t) of -noise gaussian as a sum of terms amplitude "
                           "exp(-decay t) (cos(frequency t) + sine sin(frequency t)), each written "
                           "amplitude,decay[,frequency[,sine]], with ; between them")
