@@ -91,7 +91,7 @@ void GaussianNoise::require_spectrum() {
     const double rounding = 1e-12 * scale / (1 + std::pow(omega / most, 2));
     if (value >= -rounding) continue;
     throw UnfitTable(
-        terms_.size() - 1,
+        terms_.size(),
         fmt::format("the terms have the power spectral density {:.3g} at the frequency "
                     "{:.3g}, which must not be negative",
                     value, omega));
@@ -151,7 +151,7 @@ void GaussianNoise::find_matrix() {
   const double beside = used > 1 ? std::abs(a_(0, 1)) : 0;
   if (a_(0, 0) < least * beside) {
     throw UnfitTable(
-        terms_.size() - 1,
+        terms_.size(),
         fmt::format("the covariance falls as {:.3g} t from t = 0, {:.2g} of what turns "
                     "the force: paths are too smooth for what is solved here. Less "
                     "than {:g} is refused",

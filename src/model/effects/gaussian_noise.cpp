@@ -58,10 +58,6 @@ std::string text_of(const std::vector<model::CovarianceTerm>& terms) {
 }
 
 void read_gaussian(Given& given, model::Scene& scene) {
-  if (scene.noise.name.find('+') != std::string::npos) {
-    return given.refuse("noise", "adds chains, and gaussian noise is none",
-                        "give all Gaussian parts as terms of -covariance, or take -noise ou");
-  }
   const bool by_file = given.has(kTermsFile);
   if (by_file && given.has(kTerms)) {
     return given.refuse(kTermsFile, fmt::format("gives the covariance, and so does -{}", kTerms),

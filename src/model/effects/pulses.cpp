@@ -300,6 +300,10 @@ void read_sum(Given& given, model::Scene& scene) {
     targets.push_back(scene.noise.target);
   }
   scene.noise.name = all;
+  if (std::exchange(scene.noise.gaussian, nullptr)) {
+    return given.refuse("noise", "adds chains, and gaussian noise is none",
+                        "give all Gaussian parts as terms of -covariance, or take -noise ou");
+  }
   const bool known = std::all_of(targets.begin(), targets.end(), [](const auto& f) { return !!f; });
   scene.noise.target = {};
   if (known) {
