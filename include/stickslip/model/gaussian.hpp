@@ -4,7 +4,7 @@
 #include <array>
 #include <map>
 #include <memory>
-#include <span>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -26,7 +26,10 @@ struct CovarianceTerm {
 /// where friction balances the force on those that slide; downwards and upwards.
 struct Thresholds {
   std::array<double, 2> start, balance;
-  auto operator<=>(const Thresholds&) const = default;
+
+  friend bool operator<(const Thresholds& a, const Thresholds& b) {
+    return std::tie(a.start, a.balance) < std::tie(b.start, b.balance);
+  }
 };
 
 /// X = deviation Z_1, dZ = -A Z dt + noise with E[Z Z^T] = 1: all Gaussian noise of which the
