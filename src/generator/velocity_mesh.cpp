@@ -133,8 +133,7 @@ bool has_unfollowed_waves(const model::Process& process, double omega) {
 bool has_waves(const model::Process& process, double omega) {
   const auto& noise = process.noise;
   double slowest = 4 * noise.rate();
-  const bool own = noise.table && noise.has_levels();
-  for (int i = noise.lowest(); own && i <= noise.highest(); ++i) {
+  for (int i = noise.lowest(); noise.table && i <= noise.highest(); ++i) {
     slowest = std::min(slowest, model::change_rates(noise, i).most);
   }
   return omega > slowest;

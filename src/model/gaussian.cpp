@@ -207,8 +207,7 @@ struct Element {
       double sum = 0;
       for (std::size_t n = 0; n < points.size(); ++n) {
         double square = weights[n] * (points[n] - end) / (z[k] - end);
-        const double other = k == 0 || k == p ? 0 : (high - points[n]) / (high - z[k]);
-        if (k > 0 && k < p) square *= other;
+        if (k > 0 && k < p) square *= (high - points[n]) / (high - z[k]);
         for (int l = 1; l < p; ++l) {
           if (l != k) square *= std::pow((points[n] - z[l]) / (z[k] - z[l]), 2);
         }

@@ -1,8 +1,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <charconv>
-#include <cmath>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -27,17 +25,12 @@ std::vector<model::CovarianceTerm> terms_of(const std::string& text) {
   for (const auto& part : split(text, ';')) {
     std::vector<double> numbers;
     for (const auto& word : split(part, ',')) {
-      const auto begin = word.find_first_not_of(" \t"), end = word.find_last_not_of(" \t");
-      const std::string number =
-          begin == std::string::npos ? "" : word.substr(begin, end - begin + 1);
-      double value = 0;
-      const auto [rest, problem] =
-          std::from_chars(number.data(), number.data() + number.size(), value);
-      if (problem != std::errc() || rest != number.data() + number.size()) {
+      const auto number = parse_number(word);
+      if (!number) {
         throw std::invalid_argument(
-            fmt::format("has \"{}\" in the place of a number in the term \"{}\"", number, part));
+            fmt::format("has \"{}\" in the place of a number in the term \"{}\"", word, part));
       }
-      numbers.push_back(value);
+      numbers.push_back(*number);
     }
     if (numbers.size() < 2 || numbers.size() > 4) {
       throw std::invalid_argument(fmt::format("has {} numbers in the term \"{}\", which is {}",
