@@ -248,11 +248,11 @@ struct Special {
   bool balance;
 };
 
-// What spans more than a factor of five in the distance to a special point is split there, what is
+// What spans more than a factor of eight in the distance to a special point is split there, what is
 // long is cut into equal parts.
 void split_element(const std::vector<Special>& special, double low, double high,
                    std::vector<double>& ends) {
-  constexpr double longest = 1.5, ratio = 4, most = 5, enough = 1.5;
+  constexpr double longest = 3, ratio = 6, most = 8, enough = 1.5;
   const double length = high - low;
   int graded = 0;
   double at = 0;
@@ -469,6 +469,10 @@ Dense rates_of(double decay, const Along& x, const Across& y) {
 constexpr double kApart = 1e-9;  // of the nodes on both sides of a start, in deviations
 
 constexpr int kMostNodes = 6000;
+constexpr double kOften = 1.5;
+
+// How far the noise turns until it is damped.
+double turns(const Dense& a) { return a.rows() > 1 ? std::abs(a(0, 1)) / a(0, 0) : 0; }
 
 /// Elements along the force, with cuts where bodies start, and modes across.
 struct Layout {
@@ -487,8 +491,7 @@ struct Layout {
 // start at the force that balances friction, functions are like roots there, and elements shrink.
 Layout layout_of(const Dense& a, double deviation, const Thresholds& thresholds, int order) {
   const int factors = a.rows() - 1;
-  const double turns = factors > 0 ? std::abs(a(0, 1)) / a(0, 0) : 0;
-  const int first = 2 + (turns > 1.5 ? 2 : 0) + (turns > 8 ? 2 : 0),
+  const int first = 2 + (turns(a) > kOften ? 2 : 0) + (turns(a) > 8 ? 2 : 0),
             across = factors == 1 ? std::max(1, first + 2 * (order - 3)) : order,
             along = factors == 0 ? std::min(order, 6 + std::max(0, order - 6) / 2)
                                  : 3 + (order - 2) / 2;
@@ -497,9 +500,12 @@ Layout layout_of(const Dense& a, double deviation, const Thresholds& thresholds,
     const double apart = std::abs(thresholds.start[side] - thresholds.balance[side]) / deviation;
     gap = std::min(gap, apart > kApart ? apart : 0);
   }
-  constexpr double least = 1e-4, fine = 0.03, at_starts = 0.12;
-  const double needed = std::min(fine, gap / 4) * (order > 8 ? 0.1 : 1);
-  Layout made{{}, {}, std::max({0.1 * std::pow(4, 3 - order), needed, least}), {}};
+  // Beside a start of its own nothing steep stands; at one that is a balance point functions are
+  // like roots, and down to where both are told apart.
+  constexpr double least = 1e-4, at_starts = 0.3;
+  const double apart = std::min(0.3 * std::pow(2, 3 - order), gap / 4),
+               together = 0.1 * std::pow(4, 3 - order);
+  Layout made{{}, {}, std::max({apart, together, least}), {}};
   // Beyond 5, 6 and 7 deviations lie 1e-5, 1e-7 and 1e-10 of E[X^2].
   const double reach = std::min(7.0, 3.5 + order / 2.0);
   std::vector<Special> special;
@@ -517,6 +523,8 @@ Layout layout_of(const Dense& a, double deviation, const Thresholds& thresholds,
 }
 
 }  // namespace
+
+bool GaussianNoise::damped() const { return turns(a_) <= kOften; }
 
 bool GaussianNoise::fits(const Thresholds& thresholds, int order) const {
   return layout_of(a_, deviation_, thresholds, order).nodes() <= kMostNodes;

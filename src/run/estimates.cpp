@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -69,6 +70,37 @@ double shared_error(bool durations, const Changes& errors, const Results& result
   }
   return count == 0 ? 0 : kShared * std::sqrt(squares / count);
 }
+
+double mean_square(const std::vector<double>& values) {
+  const double squares = std::inner_product(values.begin(), values.end(), values.begin(), 0.0);
+  return std::sqrt(squares / std::max<double>(1, static_cast<double>(values.size())));
+}
+
+// By how much changes of a result, or of its family, are smaller than those before; 1 if unknown.
+class Falls {
+ public:
+  Falls(const Changes& changes, const Changes& before, const Results& results)
+      : changes_(changes), before_(before), results_(results) {
+    if (before.size() != changes.size()) return;
+    for (bool durations : {false, true}) {
+      const double then = shared_error(durations, before, results);
+      if (then > 0) families_[durations] = shared_error(durations, changes, results) / then;
+    }
+  }
+
+  [[nodiscard]] double of(std::size_t r) const {
+    const Result& result = results_[r];
+    if (is_mean(result) || result.kind == Kind::share) return families_[is_duration(result)];
+    if (before_.size() != changes_.size() || before_[r].size() != changes_[r].size()) return 1;
+    const double then = mean_square(before_[r]);
+    return then > 0 ? mean_square(changes_[r]) / then : 1;
+  }
+
+ private:
+  const Changes &changes_, &before_;
+  const Results& results_;
+  std::array<double, 2> families_{1, 1};
+};
 
 ErrorPerChange factor_of(const Result& result, std::size_t entry, ErrorPerChange factor) {
   if (is_mean(result) || result.kind == Kind::share) factor.alone = 1;
@@ -146,13 +178,18 @@ Changes add_discretisation(const ErrorPerChange& factor, const Results& coarse,
   for (std::size_t r = 0; r < results.size(); ++r) {
     const auto& value = results[r].value;
     for (std::size_t e = 0; e < value.size(); ++e) {
-      const auto of = factor_of(results[r], e, factor);
       // A mode that the coarser grid did not find is all change.
       const double last = e < coarse[r].value.size() ? coarse[r].value[e] : 0;
-      const bool known = r < before.size() && e < before[r].size();
       changes[r].push_back(std::abs(value[e] - last));
-      const double both =
-          std::hypot(of.last * changes[r][e], known ? of.earlier * before[r][e] : 0);
+    }
+  }
+  const Falls falls(changes, before, results);
+  for (std::size_t r = 0; r < results.size(); ++r) {
+    for (std::size_t e = 0; e < changes[r].size(); ++e) {
+      const auto of = factor_of(results[r], e, factor);
+      const bool known = r < before.size() && e < before[r].size();
+      const double last = std::min(of.last, of.of_fall * falls.of(r));
+      const double both = std::hypot(last * changes[r][e], known ? of.earlier * before[r][e] : 0);
       errors[r].push_back(of.alone * both);
     }
   }

@@ -37,9 +37,10 @@ constexpr int kLeastDegreeOfErrors = 10;
 // Under the levels of a table errors fall in uneven steps, of which the change before tells more,
 // and the other family of means: all changes of one are small at once now and then.
 constexpr double kEarlierOfTables = 4, kOtherFamilyOfTables = 0.6;
-// Of projections modes are added: errors fall threefold a step where a noise turns often before it
-// is damped, and fiftyfold elsewhere, so that the first step tells little.
-constexpr double kLastOfProjections = 2.5, kEarlierOfProjections = 0.2;
+// Of projections modes are added. Of a noise that is damped before it turns, errors fall by a ratio
+// that rises by no more than half from one step to the next. Of narrow bands they fall fast at
+// first, and then by less than half a step, which no change tells beforehand.
+constexpr double kLastOfProjections = 2.5, kEarlierOfProjections = 0.05, kFallOfProjections = 4;
 // Where elements move from level to level changes tell less.
 constexpr double kOnOtherElements = 1.4;
 // Where friction weakens errors fall as they otherwise do so many degrees higher.
@@ -211,9 +212,13 @@ ErrorPerChange RefinementSequence::error_per_change(int n) const {
     factor.last *= degrees;
     factor.earlier *= degrees;
     if (!waves_.empty()) factor.waves_from = std::ranges::min(waves_);
-    if (scene_.noise.gaussian) {
+    if (const auto& gaussian = scene_.noise.gaussian) {
       factor.last *= kLastOfProjections;
-      factor.earlier *= kEarlierOfProjections;
+      if (gaussian->damped()) {
+        factor.earlier *= kEarlierOfProjections;
+        factor.of_fall = kFallOfProjections;
+        factor.most_fall = kInfinity;
+      }
     } else if (table_) {
       factor.earlier *= kEarlierOfTables;
       factor.of_other_family = kOtherFamilyOfTables;

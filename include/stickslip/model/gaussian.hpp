@@ -51,6 +51,8 @@ class GaussianNoise {
 
   [[nodiscard]] const std::vector<CovarianceTerm>& terms() const { return terms_; }
   [[nodiscard]] double deviation() const { return deviation_; }
+  /// Whether the noise is damped about as fast as it turns, which a narrow band is not.
+  [[nodiscard]] bool damped() const;
   /// int Cov(X_0, X_t) exp(-i omega t) dt over all t [force^2 time]; exact.
   [[nodiscard]] double power_spectral_density(double omega) const;
 
