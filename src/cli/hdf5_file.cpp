@@ -84,7 +84,8 @@ void write_density(Hdf5File& file, const quantities::DensityField& field, double
   write("cells", field.cells,
         "between two of them the density is the polynomial through the nodes there");
   write("atom", field.atom, "P(X = x_i, V = 0 and sticking)");
-  write("marginal_x", field.noise_marginal, "P(X = x_i), summed over the grid");
+  write("marginal_x", field.noise_marginal,
+        "P(X = x_i), summed over the grid; of noise without levels, of the steps around x_i");
   write("marginal_v", field.velocity_marginal, "density of V without its atom P_stick at 0");
   if (!field.states.empty()) {
     write("state", field.states, "number of the state of each row, as the noise numbers them");

@@ -450,6 +450,9 @@ std::string used_text(const Settings& settings, const Request& request, const Op
   const std::string& name = option.name;
   if (effects::is_idle(request.scene, name)) return "";
   if (name == "delta" && settings.has("delta_per_mu_s")) return "mu_s/delta_per_mu_s";
+  // With a radius of a lattice, the same options would be another noise.
+  if (request.scene.noise.gaussian && name == "delta") return "0";
+  if (request.scene.noise.gaussian && name == "noise_radius") return "";
   const bool chosen = !settings.has(name) && !option.initial.empty();
   const auto given_or = [&](double used) {
     return chosen && used != settings.real(name) ? fmt::format("{}", used) : settings.text(name);

@@ -114,16 +114,21 @@ class Rules {
   void of_continuous_paths() {
     if (!r_.scene.noise.gaussian || !settings_.sound()) return;
     const std::string noise = "-noise " + r_.scene.noise.name;
+    const std::string levels =
+        effects::noises().knows(r_.scene, "delta")
+            ? fmt::format("give -delta, such as {:.3g}, for levels", r_.scene.delta)
+            : "take -noise ou";
     report("route", r_.method.route != Route::excursion || r_.method.scheme != Scheme::hp,
-           "needs a noise of levels, which " + noise + " has not", "leave it out");
+           "needs a noise of levels, which " + noise + " has not", "leave it out, or " + levels);
     report("study", study_, "needs a noise of levels, which " + noise + " has not",
-           "leave it out, or take -noise ou");
-    const auto of_levels =
-        wanted([](const auto& entry) { return entry.of_levels || entry.of_one_run; });
+           "leave it out, or " + levels);
+    const auto of_levels = wanted([](const auto& entry) {
+      return entry.of_levels || entry.quantity == Quantity::trajectory;
+    });
     report("quantities", !of_levels.empty(),
            fmt::format("asks for {}, which are found for noises of levels alone, and {} has none",
                        enumerate(of_levels, "and"), noise),
-           "leave that out, or take -noise ou or narrow_band");
+           "leave that out, or " + levels);
     const bool starts = std::ranges::any_of(cases::entries(), [this](const auto* entry) {
       return q_.wants(entry->quantity) && entry->takes("start");
     });

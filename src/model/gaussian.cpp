@@ -41,6 +41,16 @@ void take_out(std::vector<double>& r, const std::vector<std::vector<double>>& al
 
 }  // namespace
 
+double power_spectral_density(const std::vector<CovarianceTerm>& terms, double omega) {
+  using Complex = std::complex<double>;
+  Complex sum = 0;
+  for (const auto& [amplitude, decay, frequency, sine] : terms) {
+    const Complex s(decay, omega);
+    sum += amplitude * (s + sine * frequency) / (s * s + frequency * frequency);
+  }
+  return 2 * sum.real();
+}
+
 GaussianNoise::GaussianNoise(std::vector<CovarianceTerm> terms) : terms_(std::move(terms)) {
   if (terms_.empty()) throw UnfitTable(terms_.size(), "there must be at least one term");
   double variance = 0;
@@ -96,16 +106,6 @@ void GaussianNoise::require_spectrum() {
                     "{:.3g}, which must not be negative",
                     value, omega));
   }
-}
-
-double GaussianNoise::power_spectral_density(double omega) const {
-  using Complex = std::complex<double>;
-  Complex sum = 0;
-  for (const auto& [amplitude, decay, frequency, sine] : terms_) {
-    const Complex s(decay, omega);
-    sum += amplitude * (s + sine * frequency) / (s * s + frequency * frequency);
-  }
-  return 2 * sum.real();
 }
 
 void GaussianNoise::find_matrix() {
@@ -217,6 +217,15 @@ struct Element {
     }
   }
 
+  /// The cardinal function of a node.
+  [[nodiscard]] double cardinal(std::size_t k, double at) const {
+    double product = 1;
+    for (std::size_t l = 0; l < z.size(); ++l) {
+      if (l != k) product *= (at - z[l]) / (z[k] - z[l]);
+    }
+    return product;
+  }
+
  private:
   void find_derivatives() {
     const int size = static_cast<int>(z.size());
@@ -312,7 +321,8 @@ Mesh mesh_of(const std::vector<Special>& special, double reach, int degree) {
 struct Along {
   std::vector<double> z, w;
   Dense stiffness, slope;
-  std::vector<int> cuts;  // the upper of both nodes
+  std::vector<int> cuts;                          // the upper of both nodes
+  std::vector<std::pair<int, Element>> elements;  // with the first of their nodes
 
   Along(const Mesh& mesh, const std::vector<double>& at)
       : stiffness(nodes_of(mesh, at), nodes_of(mesh, at)),
@@ -350,6 +360,7 @@ struct Along {
         }
       }
     }
+    elements.emplace_back(first, element);
   }
 
   // A jump costs that much more than a change within the element: results are off by its inverse,
@@ -466,6 +477,29 @@ Dense rates_of(double decay, const Along& x, const Across& y) {
   return rates;
 }
 
+// A distribution over nodes is a polynomial times the normal density on each element.
+Shown shown_by(const Along& x, int across, double deviation) {
+  constexpr int count = 201;
+  const double reach = x.z.back(), step = 2 * reach / (count - 1);
+  Shown shown;
+  std::size_t e = 0;
+  for (int i = 0; i < count; ++i) {
+    const double z = i == count - 1 ? reach : step * (i - count / 2);
+    while (e + 1 < x.elements.size() && x.elements[e].second.z.back() < z) ++e;
+    const auto& [first, element] = x.elements[e];
+    const double mass = step * std::exp(-z * z / 2) / std::sqrt(2 * std::numbers::pi);
+    shown.x.push_back(deviation * z);
+    shown.of.emplace_back();
+    for (std::size_t k = 0; k < element.z.size(); ++k) {
+      const int node = first + static_cast<int>(k);
+      for (int m = 0; m < across; ++m) {
+        shown.of.back().push_back({node * across + m, mass * element.cardinal(k, z) / x.w[node]});
+      }
+    }
+  }
+  return shown;
+}
+
 constexpr double kApart = 1e-9;  // of the nodes on both sides of a start, in deviations
 
 constexpr int kMostNodes = 6000;
@@ -566,6 +600,7 @@ std::shared_ptr<const LevelTable> GaussianNoise::projected(const Thresholds& thr
       made.probability.push_back(x.w[k] / total * weight);
     }
   }
+  made.shown = shown_by(x, static_cast<int>(y.weight.size()), deviation_);
   const Dense rates = rates_of(a_(0, 0), x, y);
   const int count = rates.rows();
   for (int r = 0; r < count; ++r) {

@@ -138,7 +138,7 @@ LevelTable LevelTable::of(const Projection& projection) {
   table.step_ = projection.step;
   table.even_ = projection.even;
   table.reversed_ = projection.reversed;
-  table.continuous_ = true;
+  table.shown_ = std::make_shared<const Shown>(projection.shown);
   for (double x : projection.x) table.levels_.push_back({x, 0, 0});
   for (const auto& [from, to, rate] : projection.transitions) {
     table.jumps_[from].push_back({static_cast<int>(to), rate});

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <numeric>
 #include <span>
 
 #include "stickslip/generator/state_space.hpp"
@@ -22,12 +23,21 @@ using generator::StateKind;
 
 PhaseField::PhaseField(const generator::Discretisation& discretisation,
                        const generator::StateSpace& states, Kind kind)
-    : noise_(discretisation.noise),
+    : comm_(states.comm()),
+      shown_(discretisation.process.noise.has_levels()
+                 ? nullptr
+                 : discretisation.process.noise.table->shown()),
+      noise_(discretisation.noise),
       lowest_(discretisation.process.noise.lowest()),
       kind_(kind),
       local_noise_(states.local_noise()) {
   const auto& chain = discretisation.process.noise;
-  for (int i = chain.lowest(); i <= chain.highest(); ++i) x_.push_back(chain.level(i));
+  if (shown_ != nullptr) {
+    x_ = shown_->x;
+    probability_ = model::stationary_distribution(chain);
+  } else {
+    for (int i = chain.lowest(); i <= chain.highest(); ++i) x_.push_back(chain.level(i));
+  }
   const auto nodes = discretisation.velocities->nodes();
   std::transform(nodes.rbegin(), nodes.rend(), std::back_inserter(v_),
                  [](double node) { return -node; });
@@ -57,6 +67,11 @@ void PhaseField::for_each_group(Visit visit) const {
 
 std::vector<std::size_t> PhaseField::local_levels() const {
   std::vector<std::size_t> levels;
+  if (shown_ != nullptr) {
+    levels.resize(linalg::rank(comm_) == 0 ? x_.size() : 0);
+    std::iota(levels.begin(), levels.end(), std::size_t{0});
+    return levels;
+  }
   for_each_group([&](const generator::Nodes::Group& group) {
     for (int i = group.first - lowest_; i <= group.last - lowest_; ++i) {
       levels.push_back(static_cast<std::size_t>(i));
@@ -65,7 +80,32 @@ std::vector<std::size_t> PhaseField::local_levels() const {
   return levels;
 }
 
+// Functions are averages over the nodes at a force.
+std::vector<double> PhaseField::shown_rows() const {
+  const std::size_t columns = v_.size();
+  std::vector<double> all(static_cast<std::size_t>(noise_->count()) * columns, 0.0), rows;
+  for (std::size_t n = 0; n < local_noise_.size(); ++n) {
+    const auto place = static_cast<std::size_t>(local_noise_[n] - noise_->first());
+    std::copy_n(by_node_.begin() + static_cast<std::ptrdiff_t>(n * columns), columns,
+                all.begin() + static_cast<std::ptrdiff_t>(place * columns));
+  }
+  linalg::sum_over_ranks(comm_, all);
+  for (std::size_t i : local_levels()) {
+    const double whole = kind_ == Kind::function ? shown_->at(i, probability_) : 1;
+    for (std::size_t v = 0; v < columns; ++v) {
+      double sum = 0;
+      for (const auto& [node, share] : shown_->of[i]) {
+        const auto n = static_cast<std::size_t>(node);
+        sum += share * all[n * columns + v] * (kind_ == Kind::function ? probability_[n] : 1);
+      }
+      rows.push_back(sum / whole);
+    }
+  }
+  return rows;
+}
+
 std::vector<double> PhaseField::local_rows() const {
+  if (shown_ != nullptr) return shown_rows();
   std::vector<double> rows;
   for_each_group([&](const generator::Nodes::Group& group) {
     const double* nodes = by_node_.data() + row_start(group.begin);
@@ -148,7 +188,9 @@ DensityField density_field(const StationaryDistribution& distribution) {
       {},
       speed_distribution(distribution).at_top};
   const auto& chain = process.noise;
-  for (int i = chain.lowest(); i <= chain.highest() && !chain.neighbours_only(); ++i) {
+  const auto* shown = chain.has_levels() ? nullptr : chain.table->shown();
+  const bool several = shown == nullptr && !chain.neighbours_only();
+  for (int i = chain.lowest(); i <= chain.highest() && several; ++i) {
     field.states.push_back(static_cast<double>(chain.table->listed(i)));
   }
   for_each_place(distribution, [&](Branch side, const State& state, double probability) {
@@ -167,6 +209,12 @@ DensityField density_field(const StationaryDistribution& distribution) {
   field.least = least_value(distribution.states().comm(), field.pdf);
   field.noise_marginal = noise->spread(noise_marginal);
   for (std::size_t i = 0; i < field.atom.size(); ++i) field.noise_marginal[i] += field.atom[i];
+  for (auto* marginal : {&field.atom, &field.noise_marginal}) {
+    if (shown == nullptr) break;
+    std::vector<double> by_force;
+    for (std::size_t i = 0; i < shown->x.size(); ++i) by_force.push_back(shown->at(i, *marginal));
+    *marginal = std::move(by_force);
+  }
   return field;
 }
 

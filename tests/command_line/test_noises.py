@@ -3,6 +3,9 @@
 import json
 import unittest
 
+import h5py
+import numpy
+
 from running import Case, run
 
 TELEGRAPH = ("-mu_d", "0.5", "-bias", "0.3", "-noise", "telegraph", "-telegraph_amplitude", "1",
@@ -68,6 +71,53 @@ class Noises(Case):
         self.refuse(*noise, "1,1", "-mu_d", "0.5", "-quantities", "expectation", "-observable", "v", "-time", "1",
                     message=("-start = s+: is one level",))
         self.refuse(*noise, "1,1", "-quantities", "slip", "-distance", "1", message=("asks for slip", "mu_d = mu_s"))
+
+    GROUND = ("-noise", "filtered", "-ground_frequency", "15.6", "-ground_damping", "0.6", "-noise_deviation", "2",
+              "-mu_s", "1.5", "-mu_d", "0.75")
+    BAND = ("-noise", "narrow_band", "-band_frequency", "1", "-band_width", "0.5", "-mu_d", "0.25")
+
+    def test_gaussian_noises_by_name(self):
+        ground = self.summary(*self.GROUND, "-accuracy", "1e-3")
+        for key, value in {"P_stick": 0.057558, "mean_slide": 0.330008, "E_V2": 0.0337518, "E_XV": 0.1310128}.items():
+            found = ground["results"][key]
+            self.assertLess(abs(found["value"] - value), found["error"] + 4e-5 * value, key)
+        self.assertEqual(ground["provenance"]["options"]["delta"], "0")
+        self.assertEqual(ground["provenance"]["options"]["noise_radius"], "")
+        loose = ("-accuracy", "0.03", "-quantities", "sticking,moments,noise_spectrum", "-omega", "0,1")
+        for terms, named in (("1,0.5,1", self.BAND), ("1.44,2", ("-tau", "0.5", "-noise_deviation", "1.2", "-delta", "0")),
+                             ("1,1; 0.64,5", ("-noise", "gaussian+ou", "-covariance", "1,1", "-tau", "0.2",
+                                              "-noise_deviation", "0.8", "-delta", "0"))):
+            by_terms, by_name = (self.summary(*noise, "-mu_d", "0.25", *loose)["results"] for noise in (
+                ("-noise", "gaussian", "-covariance", terms), named))
+            for key, result in by_terms.items():
+                pairs = zip(numpy.atleast_1d(by_name[key]["value"]), numpy.atleast_1d(result["value"]))
+                for found, right in pairs:
+                    self.assert_close(found, right, 1e-6)
+
+    def test_gaussian_noises_with_a_step_are_chains(self):
+        chain = self.summary(*self.BAND, "-delta", "1", "-quantities", "sticking")
+        self.assertEqual(chain["scene"]["noise_radius"], 4)
+        self.refuse("-delta", "0", "-noise_levels", "5", message=("-noise_levels = 5: counts levels", "leave it out"))
+        self.refuse("-delta", "0", "-study", "delta", message=("needs a noise of levels", "such as 0.125"))
+        smooth = (*self.BAND[:-3], "0.001", "-mu_d", "0.5")
+        self.refuse(*smooth, message=("-band_width = 0.001: the covariance falls", "too smooth", "-delta, such as 0.4"))
+        self.run_ok(*smooth, "-delta", "0.4", "-plan")
+        both = ("-noise", "narrow_band+telegraph", *self.BAND[2:], "-telegraph_amplitude", "1", "-telegraph_rate", "1")
+        self.refuse(*both, message=("adds chains, and narrow_band noise is none", "-delta, such as 0.4"))
+        self.run_ok(*both, "-delta", "0.4", "-plan")
+
+    def test_the_density_of_a_noise_without_levels(self):
+        summary = self.summary(*self.BAND, "-quantities", "sticking,moments,density", "-accuracy", "0.01", "-output", "d.h5")
+        with h5py.File(self.folder / "d.h5") as file:
+            x, v, pdf, weights, rest, marginal = (file["density"][name][:] for name in (
+                "x", "v", "pdf", "weights", "atom", "marginal_x"))
+        self.assert_close(rest.sum(), summary["results"]["P_stick"]["value"], 1e-3)
+        self.assert_close(marginal.sum(), 1, 1e-6)
+        self.assert_close((marginal * x**2).sum(), 1, 1e-5)
+        mass = pdf * weights
+        self.assert_close(mass.sum(), summary["results"]["P_slide"]["value"], 1e-3)
+        self.assert_close((mass * v**2).sum(), summary["results"]["E_V2"]["value"], 1e-3)
+        self.assert_close((mass * v * x[:, None]).sum(), summary["results"]["E_XV"]["value"], 1e-3)
 
     def test_files_that_cannot_be_read(self):
         for name in ("none.csv", "."):  # a folder is no file

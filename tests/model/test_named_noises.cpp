@@ -99,6 +99,30 @@ TEST_CASE("noises of the plane: variance and intensity tend to those of the proc
   }
 }
 
+TEST_CASE("noises of the plane: without a step they are Gaussian noise of continuous paths") {
+  for (const auto& [given, terms] :
+       {std::pair(kBand, model::CovarianceTerm{1, 0.5, 2}),
+        std::pair(kGround, model::CovarianceTerm{1, 1.5, 3 * std::sqrt(0.75), 0}),
+        std::pair(Given{{"noise", "ou"}, {"tau", "0.5"}, {"delta", "0"}, {"mu_d", "0.5"}},
+                  model::CovarianceTerm{2, 2})}) {
+    const auto scene = scene_of(given);
+    REQUIRE(scene.noise.gaussian);
+    const auto& found = scene.noise.gaussian->terms().at(0);
+    INFO(given.at("noise"));
+    CHECK(near(found.amplitude, terms.amplitude, 1e-12));
+    CHECK(near(found.decay, terms.decay, 1e-12));
+    CHECK(near(found.frequency, terms.frequency, 1e-12));
+    CHECK(near(found.sine, terms.sine, 1e-12));
+    for (double omega : {0.0, 1.0, 5.0}) {
+      CHECK(near(scene.noise.target(omega), scene.noise.gaussian->power_spectral_density(omega),
+                 1e-12));
+    }
+    const auto lattice = scene_of(with(given, {{"delta", "0.5"}}));
+    CHECK(!lattice.noise.gaussian);
+    CHECK(near(lattice.noise.target(1), scene.noise.target(1), 1e-12));
+  }
+}
+
 TEST_CASE("filtered noise: the intensity of what is filtered gives the deviation") {
   const auto given = with(kGround, {{"ground_intensity", "0.3"}, {"delta", "1"}});
   const auto scene = scene_of(given);

@@ -22,6 +22,9 @@ struct CovarianceTerm {
   double sine = 0;
 };
 
+/// int Cov(X_0, X_t) exp(-i omega t) dt over all t of a sum of terms [force^2 time]; exact.
+[[nodiscard]] double power_spectral_density(const std::vector<CovarianceTerm>& terms, double omega);
+
 /// Forces at which functions of the noise are not smooth: where bodies at rest start to move, and
 /// where friction balances the force on those that slide; downwards and upwards.
 struct Thresholds {
@@ -53,8 +56,9 @@ class GaussianNoise {
   [[nodiscard]] double deviation() const { return deviation_; }
   /// Whether the noise is damped about as fast as it turns, which a narrow band is not.
   [[nodiscard]] bool damped() const;
-  /// int Cov(X_0, X_t) exp(-i omega t) dt over all t [force^2 time]; exact.
-  [[nodiscard]] double power_spectral_density(double omega) const;
+  [[nodiscard]] double power_spectral_density(double omega) const {
+    return model::power_spectral_density(terms_, omega);
+  }
 
   /// The generator on nodes. Along the force: continuous piecewise polynomials on elements that
   /// shrink towards `balance`, at the nodes of Gauss-Lobatto rules for the normal density.

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <memory>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -38,6 +39,23 @@ struct Transition {
 [[nodiscard]] std::vector<bool> reached_from(std::size_t first, std::size_t states,
                                              const std::vector<Transition>& transitions);
 
+/// Evenly spaced forces at which a distribution over nodes is shown: probability `share` times that
+/// of a node belongs to each of them, so that probabilities over the spacing are a density.
+struct Shown {
+  struct Share {
+    int node;  ///< by place, the lowest at 0
+    double share;
+  };
+  std::vector<double> x = {};
+  std::vector<std::vector<Share>> of = {};  ///< by x
+
+  [[nodiscard]] double at(std::size_t place, std::span<const double> by_node) const {
+    double sum = 0;
+    for (const auto& [node, share] : of[place]) sum += share * by_node[static_cast<std::size_t>(node)];
+    return sum;
+  }
+};
+
 /// Nodes that stand for a noise of continuous paths. Rates between them may have any sign.
 struct Projection {
   std::vector<double> x = {}, probability = {};  ///< rising; positive, of sum 1
@@ -47,6 +65,7 @@ struct Projection {
   double step = 0;                           ///< of the finest element [force]
   double rate = 0;                           ///< with which step^2 rate is the diffusivity of X
   bool even = false, reversed = false;       ///< as LevelTable has them
+  Shown shown = {};
 };
 
 /// A chain that reaches each of its levels from each other one, by jumps to the neighbours or,
@@ -79,7 +98,9 @@ class LevelTable {
   }
 
   /// Whether these are nodes of a noise of continuous paths.
-  [[nodiscard]] bool continuous() const { return continuous_; }
+  [[nodiscard]] bool continuous() const { return shown_ != nullptr; }
+  /// The forces at which a distribution over these nodes is shown; null for levels.
+  [[nodiscard]] const Shown* shown() const { return shown_.get(); }
   /// Whether all jumps are to neighbours.
   [[nodiscard]] bool neighbours_only() const { return jumps_.empty(); }
   /// Calls visit(level, rate) for the jumps from a level, from the lowest one up.
@@ -158,7 +179,8 @@ class LevelTable {
   int lowest_ = 0, mode_ = 0;
   double upper_tail_ = 0, lower_tail_ = 0;
   double mean_ = 0, variance_ = 0, intensity_ = 0, rate_ = 0, step_ = 0;
-  bool even_ = true, reversed_ = true, continuous_ = false;
+  bool even_ = true, reversed_ = true;
+  std::shared_ptr<const Shown> shown_;
 };
 
 /// Levels that are no such chain: what() says why, row() in which of them, from 0; in none

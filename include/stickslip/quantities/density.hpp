@@ -19,7 +19,8 @@ class StateSpace;
 namespace stickslip::quantities {
 
 /// Values by rows of x_i, |i| <= N, and columns of v, -v_max ... v_max without 0, kept by noise
-/// nodes, of which whole groups are owned by ranks.
+/// nodes, of which whole groups are owned by ranks. A noise without levels has rows at evenly
+/// spaced forces, see model::Shown.
 class PhaseField {
  public:
   /// How values on noise nodes stand for those on levels.
@@ -38,7 +39,8 @@ class PhaseField {
 
   [[nodiscard]] const std::vector<double>& x() const { return x_; }
   [[nodiscard]] const std::vector<double>& v() const { return v_; }
-  /// Levels of this rank, counted from the lowest of all, and their rows. O(levels velocity nodes).
+  /// Levels of this rank, counted from the lowest of all, and their rows; without levels the first
+  /// rank has all. Collective. O(levels velocity nodes).
   [[nodiscard]] std::vector<std::size_t> local_levels() const;
   [[nodiscard]] std::vector<double> local_rows() const;
 
@@ -47,7 +49,11 @@ class PhaseField {
   template <class Visit>
   void for_each_group(Visit visit) const;
   [[nodiscard]] std::size_t row_start(int noise) const;
+  [[nodiscard]] std::vector<double> shown_rows() const;
 
+  MPI_Comm comm_;
+  const model::Shown* shown_;
+  std::vector<double> probability_;  // of nodes that are no levels
   std::shared_ptr<const generator::Nodes> noise_;
   int lowest_;
   Kind kind_;

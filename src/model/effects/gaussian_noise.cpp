@@ -56,6 +56,8 @@ void read_gaussian(Given& given, model::Scene& scene) {
     return given.refuse(kTermsFile, fmt::format("gives the covariance, and so does -{}", kTerms),
                         "leave one of them out");
   }
+  const char* option = by_file ? kTermsFile : kTerms;
+  const std::string fix = fmt::format("write {}; for example 1,0.5,2", kForm);
   std::vector<model::CovarianceTerm> terms;
   try {
     if (by_file) {
@@ -68,31 +70,39 @@ void read_gaussian(Given& given, model::Scene& scene) {
     } else {
       terms = terms_of(given.text(kTerms));
     }
-    scene.noise.gaussian = std::make_shared<const model::GaussianNoise>(terms);
   } catch (const std::exception& problem) {
-    const auto* unfit = dynamic_cast<const model::UnfitTable*>(&problem);
-    const bool one = unfit != nullptr && unfit->row() < terms.size();
-    const std::string where = one ? fmt::format("term {}: ", unfit->row() + 1) : "";
-    return given.refuse(by_file ? kTermsFile : kTerms, where + problem.what(),
-                        fmt::format("write {}; for example 1,0.5,2", kForm));
+    return given.refuse(option, problem.what(), fix);
   }
-  scene.own.emplace_back(kTerms, text_of(scene.noise.gaussian->terms()));
+  make_continuous(given, scene, terms, option, fix);
+  if (scene.noise.gaussian) scene.own.emplace_back(kTerms, text_of(terms));
+}
+
+}  // namespace
+
+void make_continuous(Given& given, model::Scene& scene,
+                     const std::vector<model::CovarianceTerm>& terms, const char* option,
+                     const std::string& fix) {
+  try {
+    scene.noise.gaussian = std::make_shared<const model::GaussianNoise>(terms);
+  } catch (const model::UnfitTable& unfit) {
+    const bool one = unfit.row() < terms.size();
+    const std::string where = one ? fmt::format("term {}: ", unfit.row() + 1) : "";
+    return given.refuse(option, where + unfit.what(), fix);
+  }
   scene.noise.target = [noise = scene.noise.gaussian](double omega) {
     return noise->power_spectral_density(omega);
   };
 }
 
-bool complete_gaussian(Given& given, model::Scene& scene) {
+bool complete_continuous(Given& given, model::Scene& scene) {
   if (!given.sound() || !scene.noise.gaussian) return false;
   try {
     scene.noise.table = scene.meant().noise.table;
   } catch (const model::UnfitTable& unfit) {
-    given.refuse(kTerms, unfit.what(), "take fewer terms");
+    given.refuse("noise", unfit.what(), "take fewer terms");
   }
   return scene.noise.table != nullptr;
 }
-
-}  // namespace
 
 const Effect kGaussianNoise{
     .word = "gaussian",
@@ -111,7 +121,7 @@ const Effect kGaussianNoise{
                        {.label = "covariance of"}),
           true}},
     .read = read_gaussian,
-    .complete = complete_gaussian,
+    .complete = complete_continuous,
     .stronger = [](const model::Scene&) {
       return std::string("larger amplitudes in -covariance");
     }};

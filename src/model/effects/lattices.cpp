@@ -3,8 +3,6 @@
 
 #include <array>
 #include <cmath>
-#include <complex>
-#include <functional>
 #include <initializer_list>
 #include <map>
 #include <numbers>
@@ -17,7 +15,7 @@
 
 namespace stickslip::effects {
 
-// Gaussian noises of two states, the force and a second one, as chains on a lattice.
+// Gaussian noises of two states, the force and a second one; with -delta as chains on a lattice.
 
 inline constexpr const char* kRadius = "noise_radius";
 [[nodiscard]] Option radius_option();
@@ -30,14 +28,11 @@ struct PlaneNoise {
   double sine = 0;
 };
 
-/// The power spectral density of such a noise.
-[[nodiscard]] std::function<double(double)> spectrum_of(const PlaneNoise& noise);
-
-/// Reads the options of its own, which are numbers, the deviation, if it is given, -delta and
-/// -noise_radius of a lattice. Unless given, the step is about half the deviation, with mu_s
-/// halfway between two levels.
-void read_lattice(Given& given, model::Scene& scene, std::initializer_list<const char*> own,
-                  double deviation);
+/// Reads the options of its own, which are numbers, and the deviation, if it is given. With -delta
+/// or -noise_radius the noise is put on a lattice; unless given, the step is then about half the
+/// deviation, with mu_s halfway between two levels.
+void read_plane(Given& given, model::Scene& scene, std::initializer_list<const char*> own,
+                double deviation, PlaneNoise (*noise)(const model::Scene&));
 
 /// What the effects of lattices have in common: Effect::complete, values and stronger.
 [[nodiscard]] bool complete_lattice(Given& given, model::Scene& scene);
@@ -209,29 +204,35 @@ Option radius_option() {
                       {.symbol = "R", .label = "radius of the noise lattice"});
 }
 
-// The covariance is the real part of deviation^2 (1 - i sine) exp(-(decay - i frequency) t).
-std::function<double(double)> spectrum_of(const PlaneNoise& noise) {
-  return [noise](double omega) {
-    using Complex = std::complex<double>;
-    const Complex amplitude(1, -noise.sine), rate(noise.decay, -noise.frequency), i(0, 1);
-    const Complex sum = amplitude / (rate + i * omega) + amplitude / (rate - i * omega);
-    return noise.deviation * noise.deviation * sum.real();
-  };
-}
-
-void read_lattice(Given& given, model::Scene& scene, std::initializer_list<const char*> own,
-                  double deviation) {
+void read_plane(Given& given, model::Scene& scene, std::initializer_list<const char*> own,
+                double deviation, PlaneNoise (*noise)(const model::Scene&)) {
   scene.noise.deviation = given.has(kDeviation) ? given.real(kDeviation) : deviation;
   const double mu_s = scene.friction.mu_s, half = *scene.noise.deviation / 2,
                places = std::round(mu_s / half - 0.5);
-  const double between = places >= 1 ? mu_s / (places + 0.5) : half;
-  scene.delta = given.has(kDelta) ? given.real(kDelta) : between;
+  scene.delta = places >= 1 ? mu_s / (places + 0.5) : half;
   for (const char* name : own) scene.own.emplace_back(name, given.real(name));
+  const bool by_step = given.has(kDelta) && given.real(kDelta) > 0;
+  if (by_step) scene.delta = given.real(kDelta);
+  if (!given.sound()) return;
+  const auto [sigma, decay, frequency, sine] = noise(scene);
+  const std::vector<model::CovarianceTerm> terms{{sigma * sigma, decay, frequency, sine}};
+  if (!by_step && !given.has(kRadius)) {
+    const char* damping = own.begin()[1];
+    return make_continuous(given, scene, terms, damping,
+                           fmt::format("take a larger -{}, or give -{}, such as {:.3g}, for a "
+                                       "lattice",
+                                       damping, kDelta, scene.delta));
+  }
   scene.own.emplace_back(kRadius, given.real(kRadius));
+  scene.noise.target = [terms](double omega) {
+    return model::power_spectral_density(terms, omega);
+  };
 }
 
 model::Parameters lattice_values(const model::Scene& scene) {
-  return {{kDeviation, *scene.noise.deviation}, {kDelta, scene.delta}};
+  model::Parameters all{{kDeviation, *scene.noise.deviation}};
+  if (!scene.noise.gaussian) all.emplace_back(kDelta, scene.delta);
+  return all;
 }
 
 model::LevelTable lattice_of(const PlaneNoise& noise, const model::Scene& scene) {
@@ -239,6 +240,7 @@ model::LevelTable lattice_of(const PlaneNoise& noise, const model::Scene& scene)
 }
 
 bool complete_lattice(Given& given, model::Scene& scene) {
+  if (scene.noise.gaussian) return complete_continuous(given, scene);
   return make_levels(given, scene, given.has(kDelta) ? kDelta : kRadius,
                      "a smaller -delta or a larger -noise_radius makes more states, a larger "
                      "-delta or a smaller -noise_radius fewer");
@@ -249,6 +251,7 @@ std::string stronger_lattice(const model::Scene&) {
 }
 
 std::string lattice_note(const model::Scene& scene, const PlaneNoise& noise) {
+  if (scene.noise.gaussian) return "";
   const auto lattice = made(noise, scene.delta, own_number(scene, kRadius));
   const auto& table = *scene.noise.table;
   const auto probability = model::stationary_distribution(scene.meant().noise);
@@ -267,11 +270,9 @@ std::string lattice_note(const model::Scene& scene, const PlaneNoise& noise) {
       "{:g}: "
       "jumps along the drift alone, on states that hold {:.2g} % of the probability, add {:.2g} % "
       "to "
-      "its diffusion; that falls with -delta, now {:g}. Without a lattice: -noise gaussian "
-      "-covariance {:.6g},{:.6g},{:.6g},{:.6g}",
+      "its diffusion; that falls with -delta, now {:g}, and without -delta there is no lattice",
       scene.noise.name, lattice.added.size(), deviation, noise.deviation, 100 * one_sided,
-      100 * added, scene.delta, noise.deviation * noise.deviation, noise.decay, noise.frequency,
-      noise.sine);
+      100 * added, scene.delta);
 }
 
 namespace {
@@ -304,8 +305,7 @@ void read_ground(Given& given, model::Scene& scene) {
     scene.own.emplace_back(kGroundIntensity, intensity);
     deviation = std::sqrt(intensity * w * (1 + 4 * zeta * zeta) / (2 * zeta));
   }
-  read_lattice(given, scene, {kGroundFrequency, kGroundDamping}, deviation);
-  scene.noise.target = spectrum_of(ground_of(scene));
+  read_plane(given, scene, {kGroundFrequency, kGroundDamping}, deviation, ground_of);
 }
 
 model::LevelTable ground_levels(const model::Scene& scene) {
@@ -316,7 +316,8 @@ model::LevelTable ground_levels(const model::Scene& scene) {
 
 const Effect kFilteredNoise{
     .word = "filtered",
-    .sentence = "white noise through a damped oscillator (Kanai and Tajimi), on a lattice",
+    .sentence =
+        "white noise through a damped oscillator (Kanai and Tajimi); with -delta on a lattice",
     .others = {"kanai_tajimi", "kanai-tajimi", "tajimi", "ground", "ground_motion", "earthquake",
                "seismic"},
     .parameters =
@@ -360,8 +361,7 @@ PlaneNoise band_of(const model::Scene& scene) {
 }
 
 void read_band(Given& given, model::Scene& scene) {
-  read_lattice(given, scene, {kBandFrequency, kBandWidth}, 1);
-  scene.noise.target = spectrum_of(band_of(scene));
+  read_plane(given, scene, {kBandFrequency, kBandWidth}, 1, band_of);
 }
 
 model::LevelTable band_levels(const model::Scene& scene) {
@@ -372,7 +372,9 @@ model::LevelTable band_levels(const model::Scene& scene) {
 
 const Effect kNarrowBand{
     .word = "narrow_band",
-    .sentence = "Gaussian noise of covariance deviation^2 exp(-gamma t) cos(omega t), on a lattice",
+    .sentence =
+        "Gaussian noise of covariance deviation^2 exp(-gamma t) cos(omega t); with -delta on a "
+        "lattice",
     .others = {"narrowband", "band", "harmonic", "waves"},
     .parameters =
         {{Option::real(kBandFrequency, "1/time", "", Range::positive(),

@@ -25,6 +25,15 @@ struct States {
 /// has the number n * (states of b) + m. Throws std::invalid_argument where that is too many.
 [[nodiscard]] States sum(const States& a, const States& b);
 
+// Gaussian noises, without levels.
+
+/// Makes the noise of a scene that of a covariance; what is wrong with it is a problem of `option`.
+void make_continuous(Given& given, model::Scene& scene,
+                     const std::vector<model::CovarianceTerm>& terms, const char* option,
+                     const std::string& fix);
+/// Its nodes. Whether there are any.
+[[nodiscard]] bool complete_continuous(Given& given, model::Scene& scene);
+
 /// Throws std::invalid_argument unless so many states can be meant.
 void require_number_of_states(double count);
 

@@ -65,6 +65,14 @@ void read_ou(Given& given, model::Scene& scene) {
   scene.noise_levels = given.integer(kLevels);
   if (given.has(kDeviation)) scene.noise.deviation = given.real(kDeviation);
   const double tau = scene.tau, sigma = scene.noise.deviation.value_or(1 / std::sqrt(tau));
+  if (given.sound() && scene.delta == 0) {
+    if (given.has(kLevels)) {
+      return given.refuse(kLevels, "counts levels, and with -delta 0 there are none",
+                          "leave it out");
+    }
+    scene.delta = sigma / 8;  // of the chain that may be taken in its place
+    return make_continuous(given, scene, {{sigma * sigma, 1 / tau}}, kTau, "take for example 1");
+  }
   scene.noise.target = [=](double omega) {
     return 2 * sigma * sigma * tau / (1 + omega * omega * tau * tau);
   };
@@ -89,6 +97,7 @@ void refuse_coarse_steps(Given& given, const model::Scene& scene, double sigma) 
 }
 
 bool check_levels(Given& given, model::Scene& scene) {
+  if (scene.noise.gaussian || !given.sound()) return complete_continuous(given, scene);
   const double delta = scene.delta,
                sigma = scene.noise.deviation.value_or(1 / std::sqrt(scene.tau)),
                ratio = delta * delta / (sigma * sigma);
@@ -125,7 +134,7 @@ bool check_levels(Given& given, model::Scene& scene) {
 }
 
 model::Parameters ou_values(const model::Scene& scene) {
-  model::Parameters all{{kTau, scene.tau}, {kDelta, scene.delta}};
+  model::Parameters all{{kTau, scene.tau}, {kDelta, scene.noise.gaussian ? 0 : scene.delta}};
   if (scene.noise.deviation) all.emplace_back(kDeviation, *scene.noise.deviation);
   return all;
 }
@@ -148,11 +157,11 @@ Option tau_option() {
 
 Option delta_option() {
   return Option::real(
-      kDelta, "force", "0.125", Range::positive(),
-      "step between neighbouring noise levels. Unless given, with -noise narrow_band and filtered "
-      "about half the deviation, so that mu_s lies halfway between two of them, and with -study "
-      "tau half the deviation",
-      "the continuous noise is the limit of small steps such as 0.125",
+      kDelta, "force", "0.125", Range::not_negative(),
+      "step between neighbouring noise levels; 0: none, the Gaussian noise of continuous paths. "
+      "Unless given, 0 with -noise narrow_band and filtered, and with -study tau half the "
+      "deviation",
+      "take for example 0.125, or 0",
       {.symbol = "\\delta", .label = "noise step", .others = {"dx", "step", "noise_step"}});
 }
 

@@ -293,16 +293,27 @@ void read_sum(Given& given, model::Scene& scene) {
   }
   const std::string all = scene.noise.name;
   std::vector<std::function<double(double)>> targets;
+  std::vector<model::CovarianceTerm> terms;
+  std::vector<std::string> continuous;
   for (const auto& word : words) {
     scene.noise.name = word;
     scene.noise.target = {};
     read_effect(given, noises(), word, scene);
     targets.push_back(scene.noise.target);
+    const auto gaussian = std::exchange(scene.noise.gaussian, nullptr);
+    if (!gaussian) continue;
+    continuous.push_back(word);
+    terms.insert(terms.end(), gaussian->terms().begin(), gaussian->terms().end());
   }
   scene.noise.name = all;
-  if (std::exchange(scene.noise.gaussian, nullptr)) {
-    return given.refuse("noise", "adds chains, and gaussian noise is none",
-                        "give all Gaussian parts as terms of -covariance, or take -noise ou");
+  if (continuous.size() == words.size()) {
+    return make_continuous(given, scene, terms, "noise", "take fewer parts");
+  }
+  for (const auto& word : continuous) {
+    given.refuse("noise", fmt::format("adds chains, and {} noise is none", word),
+                 noises().of(word).knows(kDelta)
+                     ? fmt::format("give -delta, such as {:.3g}, with which it is one", scene.delta)
+                     : "give all Gaussian parts as terms of -covariance, or take -noise ou");
   }
   const bool known = std::all_of(targets.begin(), targets.end(), [](const auto& f) { return !!f; });
   scene.noise.target = {};
@@ -348,6 +359,7 @@ model::LevelTable levels_of_sum(const model::Scene& scene) {
 }
 
 bool complete_sum(Given& given, model::Scene& scene) {
+  if (scene.noise.gaussian) return complete_continuous(given, scene);
   for (const auto& word : words_of(scene)) {
     auto part = part_of(scene, word);
     if (!given.sound() || !noises().of(word).complete(given, part)) return false;
@@ -369,7 +381,7 @@ std::string note_of_sum(const model::Scene& scene) {
   for (const auto& word : words_of(scene)) {
     const auto note = noises().of(word).note;
     if (note == nullptr) continue;
-    const std::string said = note(made_part(scene, word));
+    const std::string said = scene.noise.gaussian ? "" : note(made_part(scene, word));
     if (!said.empty()) notes.push_back(said);
   }
   return fmt::format("{}", fmt::join(notes, "; "));
