@@ -8,6 +8,7 @@ import argparse
 import dataclasses
 import pathlib
 import re
+import shlex
 import sys
 import warnings
 from collections.abc import Callable, Sequence
@@ -65,8 +66,9 @@ def main(words: Sequence[str] | None = None) -> int:
     levels.add_argument("--jumps", choices=("neighbours", "any"), default="neighbours", help="where jumps lead")
     levels.add_argument("--match-time", action=argparse.BooleanOptionalAction, help="multiply all rates by one number, with "
                         "which the chain has the correlation time of the record (default: unless levels are all its values)")
-    levels.add_argument("--narrow-band", action="store_true", help="a narrow band in the place of levels")
+    levels.add_argument("--narrow-band", action="store_true", help="Gaussian noise of a narrow band in the place of levels")
     levels.add_argument("--filtered", action="store_true", help="filtered noise (Kanai and Tajimi) in the place of levels")
+    levels.add_argument("--gaussian", action="store_true", help="Gaussian noise of several terms in the place of levels")
     levels.add_argument("--picture", type=pathlib.Path, help="autocovariance and spectrum of chain and record")
     levels.set_defaults(act=write_levels)
     force = commands.add_parser("force", description=FORCE)
@@ -207,15 +209,15 @@ def write_levels(arguments: argparse.Namespace, record: "Record") -> None:
     print(record)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UserWarning)  # the chain prints them
-        if arguments.filtered:
-            fit = noise.filtered_of(record)
-            print(fit, " ".join(f"-{name} {value}" for name, value in fit.options.items()), sep="\n")
-            return
-        chain = noise.narrow_band_of(record) if arguments.narrow_band else noise.record(
+        kinds = {name: getattr(noise, f"{name}_of") for name in ("narrow_band", "filtered", "gaussian")}
+        fit = next((kinds[name] for name in kinds if getattr(arguments, name)), None)
+        chain = fit(record) if fit else noise.record(
             record, arguments.levels, mu_s=arguments.mu_s, jumps=arguments.jumps, match_time=arguments.match_time)
     print(chain)
     states, rates, levels = (f"{arguments.file.stem}_{what}.csv" for what in ("states", "rates", "levels"))
-    if chain.neighbours_only:
+    if fit:
+        print(" ".join(f"-{name} {shlex.quote(str(value))}" for name, value in chain.options.items()))
+    elif chain.neighbours_only:
         chain.save(levels)
         print(f"-noise file -noise_file {levels}")
     else:

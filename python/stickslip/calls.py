@@ -256,9 +256,17 @@ def load(path: Path) -> Results:
 
 
 def _files_of(options: Mapping[str, Any], folder: pathlib.Path) -> dict[str, Any]:
-    """Options for a chain of `stickslip.noise`, whose files go to a folder."""
+    """Options for a noise of `stickslip.noise`; the files of a chain go to a folder."""
+    if hasattr(options["noise"], "terms"):
+        own = options["noise"].options
+        for name in options:
+            if name != "noise" and name.removeprefix("sweep_") in {"covariance_file", *own}:
+                raise BadInput(f"{name} = {options[name]}: the noise, {options['noise'].name}, has its own; leave it out"
+                               + f", and add it to the noise, whose mean {options['noise'].mean:g} acts as a bias" * (
+                                   "bias" in name))
+        return own
     if not hasattr(options["noise"], "rates"):
-        raise BadInput("noise: is a record; stickslip.noise.record() or noise.narrow_band_of() makes a chain of it, and "
+        raise BadInput("noise: is a record; stickslip.noise.record() or noise.narrow_band_of() makes a noise of it, and "
                        "force_file takes it as it is")
     files = {name: folder / f"{name}.csv" for name in ("noise_states", "noise_rates")}
     for name in files:

@@ -3,6 +3,7 @@
 import dataclasses
 import functools
 import math
+import numbers
 import os
 import pathlib
 from collections.abc import Callable
@@ -86,6 +87,8 @@ class Chain:
         return "\n".join([head, *self.notes])
 
     def __add__(self, other: "Chain | float") -> "Chain":
+        if not isinstance(other, Chain | numbers.Real):
+            return NotImplemented
         if not isinstance(other, Chain):
             return dataclasses.replace(self, x=self.x + float(other), name=f"{self.name} + {float(other):g}", fit=None,
                                        notes=self._of_this())
@@ -168,6 +171,11 @@ class Chain:
         return found.reshape(omega.shape)
 
     @property
+    def fastest(self) -> float:
+        """The largest rate at which a state is left [1/time]."""
+        return float(abs(self.generator.diagonal()).max())
+
+    @property
     def neighbours_only(self) -> bool:
         """Whether x rises, and each jump leads to the next level: what `-noise file` takes."""
         entries = self.rates.tocoo()
@@ -192,10 +200,10 @@ class Chain:
         if rates is None:
             up, down = (numpy.append(0, self.rates.diagonal(1)), numpy.append(self.rates.diagonal(-1), 0))
             rows = zip(self.x, numpy.append(up[1:], 0), numpy.append(0, down[:-1]))
-            return _write(states, said, "x,rate_up,rate_down", rows)
+            return write_table(states, said, "x,rate_up,rate_down", rows)
         entries = self.rates.tocoo()
-        _write(states, said, "x", zip(self.x))
-        _write(rates, said, "from,to,rate", zip(entries.row, entries.col, entries.data))
+        write_table(states, said, "x", zip(self.x))
+        write_table(rates, said, "from,to,rate", zip(entries.row, entries.col, entries.data))
 
     def plot(self, ax: Any = None) -> "Figure":
         """Draw autocovariance and spectrum of the chain, beside those that it stands for; returns the figure.
@@ -204,6 +212,7 @@ class Chain:
         return viewed("picture", self, ax)
 
 
-def _write(path: str | os.PathLike[str], said: str, head: str, rows: Any) -> None:
+def write_table(path: str | os.PathLike[str], said: str, head: str, rows: Any) -> None:
+    """Write rows of numbers below comments and the names of the columns, in full digits."""
     lines = [",".join(repr(value.item()) for value in row) for row in rows]
     pathlib.Path(path).write_text("\n".join([said + head, *lines, ""]))

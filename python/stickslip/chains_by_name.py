@@ -9,7 +9,7 @@ from .needed import needed
 numpy, sparse, csgraph = needed("numpy"), needed("scipy.sparse"), needed("scipy.sparse.csgraph")
 
 FULL = 6      # deviations, beyond which levels of ou are left out
-RADIUS = 3.5  # deviations, within which the lattice of narrow_band lies
+RADIUS = 3.5  # deviations, within which the lattices in the plane lie
 
 
 def positive(**values: float) -> None:
@@ -68,17 +68,18 @@ def periodic(amplitude: float, period: float, phases: int = 16) -> Chain:
     return Chain(amplitude * numpy.sin(2 * numpy.pi * k / phases), rates, "periodic")
 
 
-def narrow_band(deviation: float, gamma: float, omega: float, delta: float, radius: float = RADIUS) -> Chain:
-    """The first coordinate of a planar process dz = -(gamma + i omega) z dt + noise on a square lattice: covariance
-    s^2 exp(-gamma t) cos(omega t).
+def plane_lattice(deviation: float, decay: float, frequency: float, sine: float, delta: float, radius: float) -> Chain:
+    """The first coordinate of a Gaussian process dz = -A z dt + noise in the plane, on a square lattice: covariance
+    s^2 exp(-decay t) (cos(frequency t) + sine sin(frequency t)), with A = ((a, -c), (c, b)), a, b = decay -+ sine
+    frequency, c = frequency (1 + sine^2)^(1/2).
 
     Rates are central differences where both directions keep them positive, of second order in delta; elsewhere jumps go
     along the drift alone, which adds diffusion: a note says how much.
 
     Parameters
     ----------
-    deviation, gamma, omega
-        Standard deviation s [force], half width and angular frequency of the band [1/time].
+    deviation, decay, frequency, sine
+        Standard deviation s [force], rates [1/time] and factor of the covariance.
     delta
         Step of the lattice [force].
     radius
@@ -87,19 +88,22 @@ def narrow_band(deviation: float, gamma: float, omega: float, delta: float, radi
     Raises
     ------
     ValueError
-        If a parameter is not positive, or the lattice has a state alone.
+        If a parameter is not positive, the spectrum is negative somewhere, or the lattice has a state alone.
     """
-    positive(deviation=deviation, gamma=gamma, omega=omega, delta=delta, radius=radius)
+    positive(deviation=deviation, decay=decay, frequency=frequency, delta=delta, radius=radius)
+    a, b, c = decay - sine * frequency, decay + sine * frequency, frequency * math.hypot(1, sine)
+    if min(a, b) < -1e-12 * decay or a <= 0:
+        raise ValueError(f"sine = {sine:g}: must be in [-{decay / frequency:g}, {decay / frequency:g}) for a lattice")
     most = math.floor(radius * deviation / delta * (1 + 1e-9))
     i, j = (part.ravel() for part in numpy.mgrid[-most:most + 1, -most:most + 1])
     kept = (i**2 + j**2) * delta**2 <= (radius * deviation) ** 2 * (1 + 1e-9)
     i, j = i[kept], j[kept]
     number = numpy.full(2 * (2 * most + 3,), -1)  # of the state at a place, and -1 around the lattice
     number[i, j] = numpy.arange(len(i))  # negative places count from the end
-    spread = gamma * (deviation / delta) ** 2
     rates, added = sparse.csr_matrix(2 * (len(i),)), numpy.zeros(len(i))
-    for drift, right, up in ((-gamma * i - omega * j, 1, 0), (omega * i - gamma * j, 0, 1)):  # in steps
-        added += numpy.maximum(abs(drift) / (2 * spread) - 1, 0) / 2
+    for drift, damping, right, up in ((c * j - a * i, a, 1, 0), (-c * i - b * j, max(b, 0), 0, 1)):  # in steps
+        spread = damping * (deviation / delta) ** 2
+        added += numpy.maximum(abs(drift) / 2 - spread, 0) / (2 * decay * (deviation / delta) ** 2)
         for way in (-1, 1):
             to = number[i + way * right, j + way * up]
             rate = numpy.where(abs(drift) / 2 > spread, numpy.maximum(way * drift, 0), spread + way * drift / 2)
@@ -107,9 +111,7 @@ def narrow_band(deviation: float, gamma: float, omega: float, delta: float, radi
             rates += sparse.csr_matrix((rate[jumps], (jumps, to[jumps])), rates.shape)
     reached = csgraph.connected_components(rates, connection="strong")[1]
     inside = reached == reached[number[0, 0]]
-    chain = Chain(delta * i[inside], rates[inside][:, inside], "narrow band", Meant(
-        lambda t: deviation**2 * numpy.exp(-gamma * t) * numpy.cos(omega * t),
-        lambda w: deviation**2 * gamma * (1 / (gamma**2 + (w - omega) ** 2) + 1 / (gamma**2 + (w + omega) ** 2))))
+    chain = Chain(delta * i[inside], rates[inside][:, inside], "lattice")
     more = chain.stationary @ added[inside]
     return dataclasses.replace(chain, notes=(
         f"one-sided differences add {100 * more:.2g} % to the diffusion and the deviation is {chain.deviation:.4g} in the "

@@ -81,12 +81,10 @@ def memory_of(record: Record, longest: float | None = None, without: int | None 
     return Memory(record.step, rho[:last + 1], math.sqrt(2 * squares[last] / duration), products[0] / pairs[0], duration)
 
 
-def jackknife(record: Record, whole: Memory, best: Callable[[Memory], Sequence[float]]) -> tuple[
-        tuple[float, ...], tuple[float, ...]]:
-    """What a fit finds of a record, and its standard errors from what it finds without each of the blocks."""
-    parts = numpy.array([best(memory_of(record, whole.time[-1], n)) for n in range(BLOCKS)])
-    errors = numpy.sqrt((BLOCKS - 1) / BLOCKS * ((parts - parts.mean(axis=0)) ** 2).sum(axis=0))
-    return tuple(best(whole)), tuple(errors.tolist())
+def jackknife(parts: "Sequence[Memory]", best: "Callable[[Memory], Array]") -> "Array":
+    """Standard errors of numbers found of a record, from those found without each of its blocks."""
+    found = numpy.array([best(part) for part in parts])
+    return numpy.sqrt((BLOCKS - 1) / BLOCKS * ((found - found.mean(axis=0)) ** 2).sum(axis=0))
 
 
 def spectrum_of(record: Record, memory: Memory) -> "tuple[Array, Array]":
