@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 numpy, optimize = needed("numpy"), needed("scipy.optimize")
 
 MOST = 3          # terms that are tried
+BETTER = 0.9      # of the mean square difference, which a sum of more numbers has to fall below
 SURE = 3          # standard errors of a number that is known at all
 MEAN = 0.01       # of the deviation, below which a mean is none
 RATIOS = (0.05, 0.15, 0.4, 0.8)  # damping ratios from which a fit begins
@@ -70,7 +71,7 @@ class _Shape:
 
     def terms(self, p: "Array", memory: Memory) -> "Array":
         """Rows (share of the variance, decay, frequency, sine)."""
-        shares, swings = list(self._shares(p, memory)), p[self.decays:].reshape(-1, 2)
+        shares, swings = list(self._shares(self._columns(p, memory.time), memory.rho)), p[self.decays:].reshape(-1, 2)
         rows = [(shares.pop(0), math.exp(decay), 0, 0) for decay in p[:self.decays]]
         for place, damping in swings:
             ends, w, root = self.ends(damping), math.exp(place), math.sqrt(1 - damping**2)
@@ -81,7 +82,8 @@ class _Shape:
 
     def off(self, p: "Array", memory: Memory) -> "Array":
         """Its autocorrelation less that of the record."""
-        return self._columns(p, memory.time) @ self._shares(p, memory) - memory.rho
+        columns = self._columns(p, memory.time)
+        return columns @ self._shares(columns, memory.rho) - memory.rho
 
     def _columns(self, p: "Array", t: "Array") -> "Array":
         found = [numpy.exp(-math.exp(decay) * t) for decay in p[:self.decays]]
@@ -91,23 +93,22 @@ class _Shape:
             found += [wave.real + swing * damping / root * wave.imag for swing in self.ends(damping)]
         return numpy.array(found).T
 
-    def _shares(self, p: "Array", memory: Memory) -> "Array":
+    def _shares(self, columns: "Array", rho: "Array") -> "Array":
         """The shares that come closest (Lawson and Hanson 1974), of the sum 1."""
-        columns = self._columns(p, memory.time)
         if columns.shape[1] == 1:
             return numpy.ones(1)
         sum_counts = 1e3 * math.sqrt(len(columns))
         shares, _ = optimize.nnls(numpy.vstack([columns, numpy.full(columns.shape[1], sum_counts)]),
-                                  numpy.append(memory.rho, sum_counts))
+                                  numpy.append(rho, sum_counts))
         return shares / shares.sum()
 
     def nearest(self, starts: "Sequence[Array]", memory: Memory) -> "Array":
-        """The numbers of least squares, from the best of some starts."""
+        """The numbers of least squares, from the best two of some starts."""
         low, high = math.log(1e-2 / memory.time[-1]), math.log(30 / memory.step)
         bounds = numpy.array([(low, high)] * self.decays + [(low, high), DAMPED] * self.swings).T
-        starts = sorted(starts, key=lambda p: numpy.square(self.off(p, memory)).sum())[:3]
+        starts = sorted(starts, key=lambda p: numpy.square(self.off(p, memory)).sum())[:2]
         found = [optimize.least_squares(self.off, numpy.clip(start, bounds[0] + 1e-9, bounds[1] - 1e-9), bounds=bounds,
-                                        args=(memory,), xtol=1e-7, ftol=1e-9) for start in starts]
+                                        args=(memory,), xtol=1e-5, max_nfev=50) for start in starts]
         return min(found, key=lambda fit: fit.cost).x
 
     def grown(self, p: "Array", swing: bool, memory: Memory) -> "list[Array]":
@@ -160,7 +161,8 @@ def gaussian_of(record: Record, terms: int | None = None, *, longest: float | No
     Warns
     -----
     UserWarning
-        Where the deviation changes by more than 2 from quarter to quarter of the record.
+        Where the deviation changes by more than 2 from quarter to quarter of the record; where the autocorrelation is off by
+        more than its standard error (mean square).
     """
     if terms is not None and not (isinstance(terms, int) and terms > 0):
         raise ValueError(f"terms = {terms}: must be a whole number of at least 1")
@@ -172,8 +174,8 @@ def gaussian_of(record: Record, terms: int | None = None, *, longest: float | No
     for shape in shapes:
         p = _first(shape, whole)
         off = shape.off(p, whole)
-        size = math.sqrt(numpy.square(off).mean())
-        if size >= least:
+        size = numpy.sqrt(numpy.square(off).mean())
+        if size > BETTER * least:
             continue
 
         def numbers(memory: Memory, shape: _Shape = shape, p: "Array" = p) -> "Array":
@@ -182,7 +184,7 @@ def gaussian_of(record: Record, terms: int | None = None, *, longest: float | No
         errors, rows = jackknife(parts, numbers), shape.terms(p, whole) * (whole.variance, 1, 1, 1)
         if terms is None and best and (rows[:, 0] < SURE * errors[:, 0]).any():
             continue
-        best, least = (rows, errors, float(abs(off).max())), size
+        best, least = (rows, errors, abs(off).max()), size
         if size <= whole.error:
             break
     rows, errors, misfit = best
@@ -190,7 +192,10 @@ def gaussian_of(record: Record, terms: int | None = None, *, longest: float | No
         raise Unfit(f"record: its autocorrelation leaves that of {len(rows)} terms by {misfit:.2f}")
     named = [(f"{name}_{n + 1}", rows[n, k], errors[n, k]) for n in range(len(rows)) for k, name in enumerate(NAMES)
              if k < 2 or rows[n, 2]]
-    return _noise(record, whole, Gaussian(rows), Fitted(*zip(*((a, float(b), float(c)) for a, b, c in named)), misfit))
+    doubts = [f"its autocorrelation is off by {least:.2g} in the mean square, and by {whole.error:.2g} by chance: these terms "
+              "do not make all of it"] * bool(least > whole.error)
+    fit = Fitted(*zip(*((name, float(value), float(error)) for name, value, error in named)), float(misfit))
+    return _noise(record, whole, Gaussian(rows), fit, doubts)
 
 
 @advised

@@ -16,7 +16,6 @@ numpy = needed("numpy")
 WAYS = (("chains_of_records", "record", {}, ""), ("chains_of_records", "record", {"match_time": False}, "--no-match-time"),
         ("chains_of_records", "record", {"jumps": "any"}, "--jumps any"),
         ("gaussian_noise_of_records", "narrow_band_of", {}, "--narrow-band"),
-        ("gaussian_noise_of_records", "filtered_of", {}, "--filtered"),
         ("gaussian_noise_of_records", "gaussian_of", {}, "--gaussian"))
 STRONGEST = (0.05, 0.95)  # shares of the integral of the squared value, between which a shaking is strong
 
@@ -40,7 +39,7 @@ def _advice(record: Record) -> str:
     """The ways that serve for a record; if none does, for the part of it in which it is strong."""
     if found := _serving(record, "record", ""):
         return f"{found} was tried and serves"
-    tried = "record, narrow_band_of, filtered_of and gaussian_of of stickslip.noise were tried, and none fits the record"
+    tried = "record, narrow_band_of and gaussian_of of stickslip.noise were tried, and none fits the record"
     if unsteady(record):
         energy = numpy.cumsum(record.value**2)
         begin, end = (float(f"{record.time[numpy.searchsorted(energy, share * energy[-1])]:.3g}") for share in STRONGEST)

@@ -20,7 +20,8 @@ BINARIES = pathlib.Path(os.environ.get("STICKSLIP_BINARIES", SOURCES / "build"))
 os.environ["STICKSLIP"] = str(BINARIES / "stickslip")
 sys.path.insert(0, str(SOURCES / "python"))
 import stickslip
-from stickslip import Record, chains_of_records, noise
+from stickslip import Record, chains_of_records, gaussian_noise_of_records, noise
+from stickslip.record_statistics import Memory
 
 STEP = 0.01
 
@@ -290,7 +291,7 @@ class OfRecords(unittest.TestCase):
             records.append(record_of(slow * numpy.exp(-((time - 15) / 12) ** 2)))
         said = []
         for record in records:
-            for fit in (noise.record, noise.narrow_band_of, noise.filtered_of):
+            for fit in (noise.record, noise.narrow_band_of, noise.filtered_of, noise.gaussian_of):
                 try:
                     fit(record)
                 except ValueError as refused:
@@ -314,17 +315,14 @@ class OfRecords(unittest.TestCase):
 
     def test_a_narrow_band(self):
         record = record_of(0.2 + 1.5 * filtered(100000, 0.3 + 2j, 7))
-        with self.assertWarnsRegex(UserWarning, "add .* % to the diffusion"):
-            noise.narrow_band_of(record)
-        chain = noise.narrow_band_of(record, delta=0.5)
+        band, chain = noise.narrow_band_of(record), noise.narrow_band_of(record, delta=0.5)
+        numpy.testing.assert_allclose(band.terms, [[chain.fit.deviation**2, chain.fit.gamma, chain.fit.omega, 0]])
+        self.assertEqual(band.mean, record.value.mean())
         for name, error, true in zip(("deviation", "gamma", "omega"), chain.fit.errors, (1.5, 0.3, 2)):
             value = getattr(chain.fit, name)
             self.assertLess(abs(value - true), 4 * error, name)
             self.assertLess(error, 0.2 * true, name)
             self.assertIn(f"{name} {value:.4g} +- {error:.1g}", chain.notes[0])
-        t = numpy.linspace(0, 10, 100001)
-        self.assertAlmostEqual(chain.fit.swing, -(numpy.exp(-chain.fit.gamma * t) * numpy.cos(chain.fit.omega * t)).min(),
-                               delta=1e-8)
         self.assertAlmostEqual(chain.mean, record.value.mean(), delta=1e-9)
         self.refused("does not swing", record_of(filtered(100000, 1, 1)), function=noise.narrow_band_of)
         two = record_of(filtered(100000, 0.1 + 2j, 1) + filtered(100000, 0.1 + 5j, 2))
@@ -357,33 +355,144 @@ class OfRecords(unittest.TestCase):
             noise.narrow_band_of(shaking)
 
 
-def ground(count, frequency, damping, deviation, seed, step=STEP):
-    """The acceleration of a damped oscillator whose foot is shaken by white noise, exact at the steps."""
-    drift = numpy.array([[0, 1], [-frequency**2, -2 * damping * frequency]])
-    stay = scipy.linalg.expm(drift * step)
-    still = scipy.linalg.solve_continuous_lyapunov(drift, -numpy.diag([0, 1.0]))
-    force, z = numpy.array([frequency**2, 2 * damping * frequency]), numpy.random.default_rng(seed).standard_normal((count, 2))
-    shocks = z @ numpy.linalg.cholesky(still - stay @ still @ stay.T).T
-    states = numpy.empty((count, 2))
-    states[0] = numpy.linalg.cholesky(still) @ z[0]
-    for n in range(1, count):
-        states[n] = stay @ states[n - 1] + shocks[n]
-    return record_of(deviation * (states @ force) / (force @ still @ force) ** 0.5, step)
+def drawn(noise, count, seed, step=STEP):
+    """A record of Gaussian noise: each term by exact steps in one or two coordinates."""
+    generator, values = numpy.random.default_rng(seed), numpy.full(count, float(noise.mean))
+    for amplitude, decay, frequency, sine in noise.terms:
+        off, turn = sine * frequency, frequency * numpy.hypot(1, sine)
+        drift = numpy.array([[decay - off, -turn], [turn, decay + off]]) if frequency else numpy.array([[decay]])
+        stay = scipy.linalg.expm(-drift * step)
+        size, axes = numpy.linalg.eigh(numpy.eye(len(stay)) - stay @ stay.T)
+        shocks = generator.standard_normal((count, len(stay))) @ (axes * size.clip(0) ** 0.5).T
+        shocks[0], states = generator.standard_normal(len(stay)), numpy.empty((count, len(stay)))
+        states[0] = shocks[0]
+        for n in range(1, count):
+            states[n] = stay @ states[n - 1] + shocks[n]
+        values += amplitude**0.5 * states[:, 0]
+    return record_of(values, step)
 
 
-class FilteredOfRecords(unittest.TestCase):
+class GaussianNoise(unittest.TestCase):
+    def test_the_spectrum_of_kanai_and_tajimi(self):
+        omega, t = numpy.array([0, 1, 14, 16, 80]), numpy.array([0, 0.1, 1])
+        for damping in (0.1, 0.6, 1, 1.5):
+            found, r = noise.filtered(2, 15.6, damping), omega / 15.6
+            expected = (1 + (2 * damping * r) ** 2) / ((1 - r**2) ** 2 + (2 * damping * r) ** 2)
+            numpy.testing.assert_allclose(found.spectrum(omega) / found.spectrum(0), expected, rtol=3e-6)
+            self.assertAlmostEqual(found.deviation, 2, delta=1e-12)
+        many = numpy.linspace(0, 4000, 400001)  # Wiener and Khinchin
+        waves = found.spectrum(many) * numpy.cos(numpy.multiply.outer(t, many))
+        numpy.testing.assert_allclose(scipy.integrate.simpson(waves, many) / numpy.pi, found.covariance(t), atol=0.03)
+
+    def test_sums_scales_and_shifts(self):
+        band, ou, t = noise.narrow_band(1.5, 0.5, 3), noise.ou(0.7, 2), numpy.array([0, 0.7, 3])
+        both = 2 * band + (ou + 0.3)
+        expected = 9 * numpy.exp(-t / 2) * numpy.cos(3 * t) + 0.49 * numpy.exp(-t / 2)
+        numpy.testing.assert_allclose(both.covariance(t), expected)
+        self.assertEqual(both.options, {"noise": "gaussian", "covariance": "9.0,0.5,3.0;0.48999999999999994,0.5", "bias": 0.3})
+        self.assertAlmostEqual(both.correlation_time, (9 * 0.5 / 9.25 + 0.49 * 2) / 9.49, delta=1e-12)
+        self.assertEqual(sum([band, ou]).deviation, (band + ou).deviation)
+        for wrong in (lambda: band + noise.telegraph(1, 1), lambda: noise.telegraph(1, 1) + band):
+            self.assertRaisesRegex(TypeError, r"narrow band \+ telegraph: is no sum.*lattice\(delta\)", wrong)
+
+    def test_what_is_no_covariance(self):
+        for terms, message in (([(1, 1), (1, 0)], r"terms\[1\] = \(1, 0\): must be"), ([1, 1], r"terms\[0\] = 1"),
+                               ([(1, 1, 2, 3, 4)], r"terms\[0\]"), ([(1, 1), (-1, 2)], "variance 0"), ([], "variance 0"),
+                               ([(1, 1, 1, 1.1)], "spectrum is -.* at the frequency"),
+                               ([(2, 1), (-1, 0.4)], "spectrum is -1 at the frequency 0,")):
+            self.assertRaisesRegex(ValueError, message, noise.gaussian, terms)
+        noise.gaussian([(1, 1, 1, -1)])  # the spectrum is 0 at 0
+
+    def test_the_program_takes_it(self):
+        ground, omega = noise.filtered(2, 15.6, 0.6) + noise.ou(0.5, 1), [0, 3, 16]
+        with tempfile.TemporaryDirectory() as folder:
+            ground.save(pathlib.Path(folder) / "ground.csv")
+            asked = {"quantities": "noise_law,noise_spectrum", "omega": omega, "mu_s": 1.5, "mu_d": 0.7, "accuracy": 1e-2}
+            for options in ({"noise": ground}, {"noise": "gaussian", "covariance_file": pathlib.Path(folder) / "ground.csv"}):
+                r = stickslip.run(**options, **asked)
+                numpy.testing.assert_allclose(r["S_x_target"].value, ground.spectrum(omega), rtol=1e-5)
+                self.assertAlmostEqual(r["E_X2"].value, 4.25, delta=1e-9)
+        force = noise.ou(1, 1) + 0.2
+        shifted, biased = (stickslip.run(**options, mu_d=0.5, accuracy=1e-4)["P_stick"].value for options in (
+            {"noise": force}, {"noise": "ou", "delta": 1 / 16, "bias": 0.2}))
+        self.assertAlmostEqual(shifted, biased, delta=0.01)
+        for name in ("bias", "covariance", "sweep_bias"):
+            with self.assertRaisesRegex(stickslip.BadInput, f"{name} = .*leave it out"):
+                stickslip.run(noise=force, **{name: "1"})
+
+    def test_its_lattice(self):
+        """Central differences, of second order, halve twice with the step where they can be had."""
+        omega = numpy.array([0, 10, 20])
+        for made, within in ((noise.filtered(1, 15.6, 0.6), 0.03), (noise.gaussian([(1, 4, 9, -4 / 9)], 0.3), 0.35),
+                             (noise.ou(1, 1) + noise.ou(0.5, 0.1), 0.06)):
+            chain = made.lattice(0.5, 4)
+            self.assertAlmostEqual(chain.mean, made.mean, delta=1e-9)
+            self.assertLess(abs(chain.generator.sum(axis=1)).max(), 1e-9)
+            power = made.spectrum(omega)
+            numpy.testing.assert_allclose(chain.spectrum(omega), power, atol=within * power.max())
+            numpy.testing.assert_allclose(chain.meant.spectrum(omega), power)
+        self.assertRaisesRegex(ValueError, "amplitude = -0.2", noise.gaussian([(1, 1), (-0.2, 2)]).lattice, 0.5)
+
+
+class GaussianOfRecords(unittest.TestCase):
+    def setUp(self):
+        filters = warnings.catch_warnings()
+        filters.__enter__()
+        self.addCleanup(filters.__exit__)
+        warnings.simplefilter("ignore", UserWarning)
+
+    def test_an_exact_covariance_gives_its_terms(self):
+        t = 0.02 * numpy.arange(400)
+        for terms in ([(0.3, 1.2, 0, 0), (0.7, 0.5, 4, -0.1)], [(0.6, 8, 0, 0), (0.4, 0.7, 0, 0)],
+                      [(0.2, 0.4, 2, 0), (0.8, 1, 9, 0.05)], [(1, 4, 9, -4 / 9)]):
+            swings = sum(row[2] > 0 for row in terms)
+            memory = Memory(0.02, noise.gaussian(terms).covariance(t), 0.02, 1.0, 1000.0)
+            shape = gaussian_noise_of_records._Shape(len(terms) - swings, swings)
+            found = shape.terms(gaussian_noise_of_records._first(shape, memory), memory)
+            order = [abs(found[:, 1] - row[1]).argmin() for row in terms]
+            numpy.testing.assert_allclose(found[order], terms, atol=1e-4)
+
+    def test_the_terms_of_records(self):
+        made = {"ou": noise.ou(1.2, 0.5), "band": noise.narrow_band(1.5, 0.5, 3), "ground": noise.filtered(2, 6, 0.6),
+                "ou and band": noise.ou(0.7, 1) + noise.narrow_band(1, 0.5, 4),
+                "two bands": noise.narrow_band(1, 0.2, 2) + noise.narrow_band(1, 0.3, 6)}
+        for name, true in made.items():
+            for seed in (1, 2):
+                with self.subTest(name, seed=seed):
+                    found = noise.gaussian_of(drawn(true, 20000, seed, 0.02))
+                    self.assertEqual(len(found.terms), len(true.terms))
+                    parts = [(f"{part}_{n + 1}", value) for n, row in enumerate(true.terms) for part, value in zip(
+                        ("amplitude", "decay", "frequency", "sine"), row[:4 if row[2] else 2])]
+                    for part, value in parts:
+                        error = found.fit.errors[found.fit.names.index(part)]
+                        self.assertLess(abs(getattr(found.fit, part) - value), 4 * error, part)
+                        self.assertLess(error, max(0.35 * abs(value), 0.15), part)
+                    self.assertGreaterEqual(found.spectrum(numpy.linspace(0, 100, 5001)).min(), 0)
+
+    def test_the_number_of_terms(self):
+        record = drawn(noise.ou(0.7, 1) + noise.narrow_band(1, 0.5, 4), 20000, 1, 0.02)
+        one, two = noise.gaussian_of(drawn(noise.ou(1, 1), 20000, 1, 0.02), 2), noise.gaussian_of(record, 2)
+        self.assertEqual((len(one.terms), len(two.terms)), (2, 2))
+        self.assertEqual([len(axes.lines) for axes in two.plot().axes], [2, 2])  # the noise beside the record
+        self.assertRaisesRegex(ValueError, "terms = 0: must be a whole number", noise.gaussian_of, record, 0)
+        with self.assertWarnsRegex(UserWarning, "off by 0.* in the mean square, and by 0.* by chance: these terms do not"):
+            noise.gaussian_of(record, 1)
+        bands = drawn(noise.narrow_band(1, 0.1, 2) + noise.narrow_band(1, 0.1, 5), 40000, 1, 0.02)
+        self.assertRaisesRegex(ValueError, r"leaves that of 1 terms by .*noise.gaussian_of\(record\) \(levels --gaussian\)",
+                               noise.gaussian_of, bands, 1)
+
+    def test_a_body_under_the_fit_sticks_as_under_the_noise(self):
+        found = noise.filtered_of(drawn(noise.filtered(2, 15.6, 0.6), 80000, 3))
+        r = stickslip.run(noise=found, mu_s=1.5, mu_d=0.75, accuracy=0.02, quantities="sticking")
+        self.assertAlmostEqual(r["P_stick"].value / 0.057558, 1, delta=0.06)  # that of the true noise by another program
+
     def test_the_numbers_of_a_ground(self):
         for damping in (0.1, 0.3, 0.6, 0.8):
-            fit = noise.filtered_of(ground(40000, 15, damping, 1.5, 3))
+            fit = noise.filtered_of(drawn(noise.filtered(1.5, 15, damping), 40000, 3)).fit
             for found, error, true in zip((fit.deviation, fit.frequency, fit.damping), fit.errors, (1.5, 15, damping)):
                 self.assertLess(abs(found - true), 4 * error)
                 self.assertLess(error, 0.15 * true)
             self.assertLess(fit.misfit, 0.05)
-
-    def test_the_program_takes_its_options(self):
-        fit = noise.filtered_of(ground(20000, 15, 0.6, 1.5, 4))
-        r = stickslip.run(**fit.options, delta=0.5, mu_d=0.5, quantities="noise_law")
-        self.assertAlmostEqual(r["E_X2"].value / fit.deviation**2, 1, delta=0.05)
 
     def test_what_is_no_ground(self):
         def refused(message, values):
@@ -392,9 +501,15 @@ class FilteredOfRecords(unittest.TestCase):
 
         refused("decays without a swing, as that of no ground does", filtered(40000, 5, 1))
         refused("leaves that of filtered noise by", filtered(40000, 0.5, 2) + filtered(40000, 3 + 40j, 1))
-        shaken = ground(4000, 15, 0.5, 1, 1)
-        self.assertIn("the mean of the record, 5, is left out: -bias takes it",
-                      str(noise.filtered_of(record_of(shaken.value - shaken.value.mean() + 5))))
+
+    def test_means(self):
+        shaken = drawn(noise.filtered(1, 15, 0.5), 4000, 1).value
+        shaken -= shaken.mean()
+        self.assertEqual(noise.filtered_of(record_of(shaken)).mean, 0)
+        self.assertAlmostEqual(noise.filtered_of(record_of(shaken + 5)).mean, 5, delta=1e-9)
+        doubtful = noise.filtered_of(record_of(shaken + 0.05))
+        self.assertIn("the mean of the record, 0.05 +- 0.04, is left out; noise + 0.05 has it", str(doubtful))
+        self.assertEqual(doubtful.mean, 0)
 
 
 class CommandLine(unittest.TestCase):
@@ -433,9 +548,10 @@ class CommandLine(unittest.TestCase):
         numpy.save(self.folder / "b.npy", filtered(50000, 1 + 2j, 4))
         self.assertIn("swings to", self.levels("b.npy", "--step", STEP, status=2))
         self.assertIn("gamma", self.levels("b.npy", "--step", STEP, "--narrow-band"))
-        numpy.save(self.folder / "c.npy", ground(20000, 15, 0.6, 1.5, 5).value)
-        self.assertRegex(self.levels("c.npy", "--step", STEP, "--filtered"),
-                         r"-noise filtered -noise_deviation 1\.\d+ -ground_frequency 1\d\.\d+ -ground_damping 0\.\d+\n")
+        numpy.save(self.folder / "c.npy", drawn(noise.filtered(1.5, 15, 0.6), 20000, 5).value)
+        for word in ("--filtered", "--gaussian"):  # nearly the same
+            self.assertRegex(self.levels("c.npy", "--step", STEP, word, "--picture", "c.png"),
+                             r"-noise gaussian -covariance 2\.\d+,\d+\.\d+,\d+\.\d+,-0\.\d+\nc.png\n")
 
 
     def test_a_record_for_force_file(self):
