@@ -188,6 +188,8 @@ def gaussian_of(record: Record, terms: int | None = None, *, longest: float | No
         if size <= whole.error:
             break
     rows, errors, misfit = best
+    order = numpy.lexsort(rows[:, 1:3].T)  # by frequency
+    rows, errors = rows[order], errors[order]
     if misfit > SWING + SURE * whole.error:
         raise Unfit(f"record: its autocorrelation leaves that of {len(rows)} terms by {misfit:.2f}")
     named = [(f"{name}_{n + 1}", rows[n, k], errors[n, k]) for n in range(len(rows)) for k, name in enumerate(NAMES)
