@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 numpy, optimize = needed("numpy"), needed("scipy.optimize")
 
 MOST = 3          # terms that are tried
+CHANCE = 1.2      # standard errors by which an autocorrelation is off by chance (mean square)
 BETTER = 0.9      # of the mean square difference, which a sum of more numbers has to fall below
 SURE = 3          # standard errors of a number that is known at all
 MEAN = 0.01       # of the deviation, below which a mean is none
@@ -104,7 +105,7 @@ class _Shape:
 
     def nearest(self, starts: "Sequence[Array]", memory: Memory) -> "Array":
         """The numbers of least squares, from the best two of some starts."""
-        low, high = math.log(1e-2 / memory.time[-1]), math.log(30 / memory.step)
+        low, high = math.log(0.2 / memory.time[-1]), math.log(30 / memory.step)
         bounds = numpy.array([(low, high)] * self.decays + [(low, high), DAMPED] * self.swings).T
         starts = sorted(starts, key=lambda p: numpy.square(self.off(p, memory)).sum())[:2]
         found = [optimize.least_squares(self.off, numpy.clip(start, bounds[0] + 1e-9, bounds[1] - 1e-9), bounds=bounds,
@@ -142,8 +143,8 @@ def gaussian_of(record: Record, terms: int | None = None, *, longest: float | No
     record
         With even steps; gaps are skipped. Its mean becomes that of the noise if it is three of its standard errors.
     terms
-        How many; by default the fewest numbers, in at most 3 terms, with which the autocorrelation is off by its standard
-        error (mean square), of terms whose amplitudes are three of their standard errors.
+        How many; by default the fewest numbers, in at most 3 terms, with which the autocorrelation is off by at most 1.2 of
+        its standard errors (mean square).
     longest
         Time up to which the autocorrelation is fitted; by default 12 times the integral of its square.
 
@@ -162,7 +163,7 @@ def gaussian_of(record: Record, terms: int | None = None, *, longest: float | No
     -----
     UserWarning
         Where the deviation changes by more than 2 from quarter to quarter of the record; where the autocorrelation is off by
-        more than its standard error (mean square).
+        more than 1.2 of its standard errors (mean square).
     """
     if terms is not None and not (isinstance(terms, int) and terms > 0):
         raise ValueError(f"terms = {terms}: must be a whole number of at least 1")
@@ -182,10 +183,8 @@ def gaussian_of(record: Record, terms: int | None = None, *, longest: float | No
             return shape.terms(shape.nearest([p], memory), memory) * (memory.variance, 1, 1, 1)
 
         errors, rows = jackknife(parts, numbers), shape.terms(p, whole) * (whole.variance, 1, 1, 1)
-        if terms is None and best and (rows[:, 0] < SURE * errors[:, 0]).any():
-            continue
         best, least = (rows, errors, abs(off).max()), size
-        if size <= whole.error:
+        if size <= CHANCE * whole.error:
             break
     rows, errors, misfit = best
     order = numpy.lexsort(rows[:, 1:3].T)  # by frequency
@@ -195,7 +194,7 @@ def gaussian_of(record: Record, terms: int | None = None, *, longest: float | No
     named = [(f"{name}_{n + 1}", rows[n, k], errors[n, k]) for n in range(len(rows)) for k, name in enumerate(NAMES)
              if k < 2 or rows[n, 2]]
     doubts = [f"its autocorrelation is off by {least:.2g} in the mean square, and by {whole.error:.2g} by chance: these terms "
-              "do not make all of it"] * bool(least > whole.error)
+              "do not make all of it"] * bool(least > CHANCE * whole.error)
     fit = Fitted(*zip(*((name, float(value), float(error)) for name, value, error in named)), float(misfit))
     return _noise(record, whole, Gaussian(rows), fit, doubts)
 
