@@ -163,7 +163,7 @@ def gaussian_of(record: Record, terms: int | None = None, *, longest: float | No
     -----
     UserWarning
         Where the deviation changes by more than 2 from quarter to quarter of the record; where the autocorrelation is off by
-        more than 1.2 of its standard errors (mean square).
+        more than 1.2 of its standard errors (mean square), or its paths are smooth.
     """
     if terms is not None and not (isinstance(terms, int) and terms > 0):
         raise ValueError(f"terms = {terms}: must be a whole number of at least 1")
@@ -195,6 +195,8 @@ def gaussian_of(record: Record, terms: int | None = None, *, longest: float | No
              if k < 2 or rows[n, 2]]
     doubts = [f"its autocorrelation is off by {least:.2g} in the mean square, and by {whole.error:.2g} by chance: these terms "
               "do not make all of it"] * bool(least > CHANCE * whole.error)
+    doubts += [f"sine_{n + 1} is at the end of what is taken: paths may be smoother than those of the noise"
+               for n, row in enumerate(rows) if row[3] * row[2] > 0.999 * ENDS[1] * row[1]]
     fit = Fitted(*zip(*((name, float(value), float(error)) for name, value, error in named)), float(misfit))
     return _noise(record, whole, Gaussian(rows), fit, doubts)
 
@@ -316,7 +318,7 @@ def _noise(record: Record, whole: Memory, noise: Gaussian, fit: Fitted, doubts: 
         warnings.warn(note, UserWarning, stacklevel=4)
     error = math.sqrt(max(noise.spectrum(0) / whole.duration, 0))
     known = abs(mean) > max(SURE * error, MEAN * noise.deviation)
-    left = [f"the mean of the record, {mean:.3g} +- {error:.1g}, is left out; noise + {mean:.3g} has it"]
+    left = [f"the mean of the record, {mean:.3g} +- {error:.1g}, is left out; noise + record.value.mean() has it"]
     return dataclasses.replace(noise, mean=mean if known else 0.0, fit=fit, name=f"{noise.name} of "
                                f"{record.source or 'a record'}", meant=measured(whole, *spectrum_of(record, whole)),
                                notes=(str(fit), *doubts, *left * (not known and abs(mean) > MEAN * noise.deviation)))
