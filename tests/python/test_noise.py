@@ -414,8 +414,8 @@ class GaussianNoise(unittest.TestCase):
                 self.assertAlmostEqual(r["E_X2"].value, 4.25, delta=1e-9)
         force = noise.ou(1, 1) + 0.2
         shifted, biased = (stickslip.run(**options, mu_d=0.5, accuracy=1e-4)["P_stick"].value for options in (
-            {"noise": force}, {"noise": "ou", "delta": 1 / 16, "bias": 0.2}))
-        self.assertAlmostEqual(shifted, biased, delta=0.01)
+            {"noise": force}, {"noise": "gaussian", "covariance": "1,1", "bias": 0.2}))
+        self.assertAlmostEqual(shifted, biased, delta=1e-9)
         for name in ("bias", "covariance", "sweep_bias"):
             with self.assertRaisesRegex(stickslip.BadInput, f"{name} = .*leave it out"):
                 stickslip.run(noise=force, **{name: "1"})
