@@ -22,7 +22,7 @@ TABLE_1 = {0.25: ("5.32/6.73", "10.83/10.51", "21.81/20.94"),
 # S_v at omega = 0, 0.1, 1, 10 for mu_d = 1/4 by delta, another code.
 S_V = {1 / 2: ("1.05184088", "1.03401702", "0.310095661", "1.85013e-4"),
        1 / 4: ("1.08314710", "1.06555462", "0.330747341", "1.91001e-4")}
-# F_slide(1), F_stick(1) for delta = 1 by mu_d: Chebyshev collocation, dynamics/collocation.py.
+# F_slide(1), F_stick(1) for delta = 1 by mu_d: by one Chebyshev polynomial in v on each level, dense.
 F_1 = {1: ("0.301282642717", "0.179691207960"), 0.25: ("0.124123808609", "0.221868272518")}
 # t_corr for tau -> 0 and mu_d = 1 by the drag law.
 T_CORR = {"none": 1.35446038, "linear": 0.247854704305}

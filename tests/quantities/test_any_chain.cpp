@@ -90,28 +90,6 @@ TEST_CASE("any chain: a sine and noise, with many starts, known to eleven digits
                 1e-10);
 }
 
-// What nothing of excursions, of starts and of the static phase has a part in.
-TEST_CASE("any chain: the null vector of the generator agrees, with bias and thresholds",
-          "[real]") {
-  auto s = test::with_table(test::scene(0.8, 0.4, 1, 1, {1, 0.5}),
-                            test::sine_and_levels(1, 5, 5, 0.6, 1, 0.8, 2));
-  s.bias = 0.1;
-  s.friction.mu_s_minus = 0.9;
-  REQUIRE(s.meant().starts().size() > 4);
-  auto c = asking(s, {Quantity::sticking, Quantity::moments, Quantity::averages}, 1e-9);
-  const auto found = values(c);
-  for (Route route : {Route::null_vector, Route::lambda}) {
-    c.method.route = route;
-    c.question.accuracy = route == Route::lambda ? 1e-6 : 1e-8;
-    c.question.lambda = {};
-    for (const auto& [key, r] : values(c)) {
-      INFO(key);
-      REQUIRE(found.contains(key));
-      CHECK(found.at(key).value[0] == Approx(r.value[0]).epsilon(1e-5));
-    }
-  }
-}
-
 TEST_CASE("any chain: upwind and elements agree to the errors of upwind", "[real]") {
   const auto s = test::with_table(kPlain, test::five_states());
   auto c = asking(s, kMeans, 1e-8);

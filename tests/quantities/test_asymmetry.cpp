@@ -3,18 +3,19 @@
 
 #include "../common/catch.hpp"
 #include "../common/near.hpp"
-#include "../common/scenes.hpp"
-#include "stickslip/linalg/petsc.hpp"
+#include "../common/solved.hpp"
+#include "stickslip/model/noise_chain.hpp"
+#include "stickslip/quantities/density.hpp"
 #include "stickslip/quantities/engines/excursions.hpp"
-#include "stickslip/quantities/spectra.hpp"
 #include "stickslip/run/evaluation.hpp"
-#include "stickslip/run/fluid_queue.hpp"
 
 using namespace stickslip;
 using cases::Quantity;
 using cases::Route;
+using test::biased;
 using test::relative_difference;
 using test::scene;
+using test::Solved;
 
 namespace {
 
@@ -101,6 +102,24 @@ model::Scene asymmetric() {
   s.friction.mu_d_minus = 0.7;
   s.bias = 0.2;
   return s;
+}
+
+const std::vector<model::Scene>& sample_scenes() {
+  static const std::vector<model::Scene> scenes{
+      scene(1, 0.25, 1, 0.25, {1, 0}), scene(1, 1, 1, 0.5, {1, 0}),
+      scene(0.2, 0.15, 1, 0.5, {1, 0}),  // k = 0
+      scene(0.7, 0.4, 2, 0.5, {0.5, 1}), scene(1, 0.5, 1, 0.5, {0, 0})};
+  return scenes;
+}
+
+std::map<std::string, double> scalars(const Solved& solved) {
+  quantities::Results results;
+  quantities::append_sticking(solved.distribution.excursion(), results);
+  quantities::append_moments(solved.distribution.discretisation(), solved.distribution.excursion(),
+                             results);
+  std::map<std::string, double> values;
+  for (const auto& r : results) values[r.key] = r.value[0];
+  return values;
 }
 
 model::Scene mirrored(model::Scene s) {
@@ -191,63 +210,6 @@ TEST_CASE("asymmetry: thresholds that differ alike are a bias", "[parallel]") {
   check_alike(found, expected, 1e-12);
 }
 
-// Four solution methods that share the matrix at most, and the queue that shares nothing.
-TEST_CASE("asymmetry: the solution methods agree") {
-  auto s = asymmetric();
-  for (bool drag : {true, false}) {
-    if (!drag) s.drag = {0, 0};
-    cases::Case c;
-    c.scene = s;
-    c.question.accuracy = 1e-9;
-    c.question.lambda = {0.3, 3};
-    const auto d = test::on_hp(test::on_full_noise(s), drag ? 5 : 10);
-    const auto of = [&](Route route, std::set<Quantity> quantities) {
-      auto asked = c;
-      asked.question.quantities = std::move(quantities);
-      asked.method.route = route;
-      if (route == Route::lambda) asked.question.lambda = {};
-      return evaluated(asked, d);
-    };
-    const std::set<Quantity> averages{Quantity::sticking, Quantity::moments, Quantity::averages};
-    const auto excursions = of(Route::excursion, averages);
-    check_alike(excursions, of(Route::lambda, averages), 1e-7);
-    check_alike(excursions, of(Route::null_vector, averages), 1e-9);
-    check_alike(excursions, of(Route::hitting, {Quantity::sticking}), 1e-10);
-    if (drag) continue;
-    const std::set<Quantity> renewal{Quantity::sticking, Quantity::moments, Quantity::entry_law,
-                                     Quantity::laplace};
-    check_alike(of(Route::excursion, renewal), of(Route::fluid_queue, renewal), 1e-10);
-  }
-}
-
-// u = f/lambda + ... of the whole process, solved at once.
-TEST_CASE("asymmetry: the representation formula gives the resolvent of the whole process") {
-  const auto s = asymmetric();
-  for (const auto& d : {test::on_hp(s, 5, 1e-9), test::on_upwind(s, 3)}) {
-    linalg::SolverStatistics statistics;
-    generator::Systems systems(PETSC_COMM_WORLD, d, statistics);
-    std::vector<model::Observable> f;
-    for (const auto& pair : kObservables) {
-      f.push_back(model::parse_observable(pair[0], s.friction));
-    }
-    for (double lambda : {1e-3, 1.0, 1e2}) {
-      const auto r = quantities::resolvent(systems, lambda, f);
-      auto& whole = systems.at(lambda, generator::Symmetry::none, generator::StaticPhase::kept);
-      for (std::size_t n = 0; n < f.size(); ++n) {
-        const auto u = whole.factors().solve(whole.a().values(f[n].value));
-        INFO(f[n].name << " at lambda " << lambda);
-        CHECK(relative_difference(quantities::value_of(whole.a().trace_at_exit(), u).value,
-                                  r.of[n].u.value) < 1e-10);
-        CHECK(
-            relative_difference(
-                quantities::value_of(whole.a().trace_at_exit(generator::Branch::negative), u).value,
-                r.of[n].u_from_minus.value) < 1e-10);
-      }
-      systems.release({lambda, generator::Symmetry::none, generator::StaticPhase::kept});
-    }
-  }
-}
-
 // mu_d |V| and the drag take what the noise and the bias put in.
 TEST_CASE("asymmetry: friction takes the power that drag leaves", "[parallel]") {
   const auto s = asymmetric();
@@ -307,6 +269,62 @@ TEST_CASE("expectation: from rest and from the stationary distribution", "[paral
         CHECK(rest.at(key)[n] == Approx(mixed[n]).margin(1e-7));
       }
       CHECK(rest.at(key)[2] == Approx(rest.at(limit)[0]).margin(1e-7));
+    }
+  }
+}
+
+TEST_CASE("bias: without one both velocity branches give what one of them gives", "[parallel]") {
+  for (const auto& s : sample_scenes()) {
+    for (bool hp : {true, false}) {
+      const auto on = [&](const model::Scene& any) {
+        return hp ? test::on_hp(any, 8) : test::on_upwind(any, 4);
+      };
+      const Solved symmetry_reduced(on(s));
+      Solved whole(on(biased(s, kNothing)));
+      REQUIRE_FALSE(whole.distribution.process().symmetric());
+      const auto one = scalars(symmetry_reduced), both = scalars(whole);
+      INFO("mu_s " << s.friction.mu_s << " delta " << s.delta << " hp " << hp);
+      for (const auto& [key, value] : one) {
+        INFO(key);
+        if (key != "E_V") CHECK(relative_difference(both.at(key), value) < 1e-11);
+      }
+      CHECK(std::abs(both.at("E_V")) < 1e-12 * one.at("E_absV"));
+      const double falling = whole.distribution.starts().next[2];  // of s-, s+
+      CHECK(falling > 0);
+      CHECK(falling < 1);
+      CHECK(whole.distribution.excursion().conservation_defect(
+                whole.distribution.discretisation()) < 1e-10);
+    }
+  }
+}
+
+TEST_CASE("bias: the density integrates to the distribution and to its drift") {
+  for (double bias : {0.2, -1.4}) {
+    const auto s = biased(scene(1, 0.6, 1, 0.25, {1, 0}), bias);
+    const Solved solved(test::on_hp(s, 8));
+    const auto field = quantities::density_field(solved.distribution);
+    const auto values = scalars(solved);
+    const auto weights = solved.distribution.discretisation().velocities->weights();
+    const std::size_t half = field.pdf.v().size() / 2;
+    double sliding = 0, drift = 0, noise = 0, stick = 0;
+    for (std::size_t j = 0; j < half; ++j) {
+      const double above = weights[j] * field.velocity_marginal[half + j];
+      const double below = weights[j] * field.velocity_marginal[half - 1 - j];
+      sliding += above + below;
+      drift += field.pdf.v()[half + j] * (above - below);
+    }
+    for (std::size_t i = 0; i < field.atom.size(); ++i) {
+      stick += field.atom[i];
+      noise += field.noise_marginal[i];
+    }
+    CHECK(stick == Approx(values.at("P_stick")).epsilon(1e-12));
+    CHECK(sliding + stick + field.truncated_mass == Approx(1).epsilon(1e-11));
+    CHECK(drift == Approx(values.at("E_V")).epsilon(1e-9));
+    CHECK(noise == Approx(1).epsilon(1e-11));
+    // The distribution of the noise, level by level.
+    const auto distribution = model::stationary_distribution(solved.distribution.process().noise);
+    for (std::size_t i = 0; i < distribution.size(); ++i) {
+      CHECK(field.noise_marginal[i] == Approx(distribution[i]).epsilon(1e-7).margin(1e-12));
     }
   }
 }

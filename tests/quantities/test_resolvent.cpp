@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "../common/catch.hpp"
+#include "../common/chains.hpp"
 #include "../common/near.hpp"
 #include "../common/scenes.hpp"
 #include "stickslip/linalg/petsc.hpp"
@@ -77,6 +78,17 @@ const std::vector<model::Scene>& sample_scenes() {
   return scenes;
 }
 
+// The last one has 42 states, 10 of which are starts.
+std::vector<model::Scene> without_symmetry() {
+  auto asymmetric = test::biased(scene(1, 0.4, 1, 0.5, {1, 0}), 0.2);
+  asymmetric.friction.mu_s_minus = 1.3;
+  asymmetric.friction.mu_d_minus = 0.7;
+  const auto five = test::with_table(scene(1, 0.5, 1, 1, {1, 0}), test::five_states());
+  const auto sine = test::with_table(scene(0.8, 0.4, 1, 1, {1, 0}),
+                                     test::sine_and_levels(1.1, 4, 6, 0.6, 1, 0.7, 3));
+  return {asymmetric, five, test::biased(five, 0.15), test::biased(sine, 0.1)};
+}
+
 /// Systems of one discretisation, with what must outlive them.
 struct Discretised {
   explicit Discretised(const test::Discrete& d) : systems(PETSC_COMM_WORLD, d, statistics) {}
@@ -112,6 +124,30 @@ TEST_CASE("resolvent: the representation formula gives the resolvent of the whol
         const double even = r.of[n].pi_lambda.value == 0 ? 0 : u.even_by_lambda / lambda;
         CHECK(close(even + u.odd, r.of[n].u.value));
       }
+    }
+  }
+}
+
+// Without symmetry, and from many starts; solved for on all states, with the static ones.
+TEST_CASE("resolvent: without symmetry it is that of the whole process, too") {
+  const auto f = observables({"v^2", "stick", "v", "x*v+v", "y == 0 ? x + 1 : v*v*v"});
+  auto discretisations = std::vector{test::on_upwind(without_symmetry()[0], 3)};
+  for (const auto& s : without_symmetry()) discretisations.push_back(test::on_hp(s, 5, 1e-9));
+  for (const auto& d : discretisations) {
+    Discretised made(d);
+    for (double lambda : {1e-3, 0.5, 1e2}) {
+      const auto r = quantities::resolvent(made.systems, lambda, f);
+      auto& whole = made.systems.at(lambda, Symmetry::none, StaticPhase::kept);
+      for (std::size_t n = 0; n < f.size(); ++n) {
+        const auto u = whole.factors().solve(whole.a().values(f[n].value));
+        INFO(f[n].name << " at " << lambda);
+        for (const auto& [branch, found] :
+             {std::pair{Branch::positive, &r.of[n].u}, {Branch::negative, &r.of[n].u_from_minus}}) {
+          const double known = quantities::value_of(whole.a().trace_at_exit(branch), u).value;
+          CHECK(std::abs(found->value - known) < 1e-10 * std::abs(known));
+        }
+      }
+      made.systems.release({lambda, Symmetry::none, StaticPhase::kept});
     }
   }
 }
@@ -205,5 +241,103 @@ TEST_CASE("resolvent: u is given where all lambda are positive", "[parallel]") {
     const auto is_u = [](const auto& result) { return result.key == "u(v^2)"; };
     CHECK(std::count_if(results.begin(), results.end(), is_u) == (first > 0 ? 1 : 0));
     for (const auto& result : results) CHECK(result.value.size() == 2);
+  }
+}
+
+TEST_CASE("resolvent: at lambda = 0 the resolvent is that of small lambda", "[real]") {
+  const auto f = observables({"stick", "v^2", "x*v+v"});
+  for (const auto& s : without_symmetry()) {
+    Discretised made(test::on_hp(s, 11));
+    const quantities::StationaryDistribution distribution(made.systems);
+    quantities::Results known;
+    quantities::append_sticking(distribution.excursion(), known);
+    quantities::append_moments(distribution.discretisation(), distribution.excursion(), known);
+    const auto r = quantities::resolvent(made.systems, 0, f),
+               near = quantities::resolvent(made.systems, 1e-7, f);
+    CHECK(relative_difference(r.of[0].pi_lambda.value, known[0].value[0]) < 1e-10);
+    CHECK(relative_difference(r.of[1].pi_lambda.value, known[5].value[0]) < 1e-10);
+    for (std::size_t n = 0; n < f.size(); ++n) {
+      INFO(f[n].name << " bias " << s.bias);
+      CHECK(std::abs(r.of[n].mu_lambda.value - near.of[n].mu_lambda.value) < 1e-5);
+      CHECK(r.of[n].mu_lambda.error < 1e-11);
+      CHECK(near.of[n].mu_lambda.error < 1e-11);
+    }
+  }
+}
+
+// Copies of a level are alike, whichever is reached.
+TEST_CASE("resolvent: levels with two states each give what they give with one", "[real]") {
+  auto weak = test::scene(1, 0.3, 1, 0.5, {1, 0});
+  weak.noise_levels = 5;
+  for (double bias : {0.0, 0.2}) {
+    weak.bias = bias;
+    const auto twice = test::with_table(weak, test::twice(weak.meant().noise, 0.3));
+    REQUIRE(twice.meant().starts().size() == 4);
+    const auto f = observables({"v^2", "stick", "v", "x*v+v", "abs(v)"});
+    Discretised one(test::on_hp(weak, 11)), two(test::on_hp(twice, 11));
+    for (double lambda : {0.0, 0.4, 50.0}) {
+      const auto known = quantities::resolvent(one.systems, lambda, f),
+                 found = quantities::resolvent(two.systems, lambda, f);
+      INFO("lambda " << lambda << " bias " << bias);
+      const auto same = [&](quantities::Uncertain a, quantities::Uncertain b) {
+        INFO(a.value << " for " << b.value);
+        CHECK(std::abs(a.value - b.value) < 1e-11 * (std::abs(b.value) + 0.01));
+        CHECK(a.error < 1e-11 * (std::abs(b.value) + 0.01));
+      };
+      same(found.from_plus.h_plus, known.from_plus.h_plus);
+      same(found.from_plus.h_minus, known.from_plus.h_minus);
+      same(found.from_minus.h_minus, known.from_minus.h_minus);
+      same(found.from_minus.w_one, known.from_minus.w_one);
+      for (std::size_t n = 0; n < f.size(); ++n) {
+        INFO(f[n].name);
+        using Of = quantities::ObservableTransforms;
+        for (auto member : {&Of::w_plus, &Of::w_minus, &Of::pi_lambda, &Of::mu_lambda,
+                            &Of::mu_from_minus, &Of::u}) {
+          same(found.of[n].*member, known.of[n].*member);
+        }
+      }
+    }
+  }
+}
+
+// By hand: three starts, of which the equations are solved by Cramer's rule.
+TEST_CASE("resolvent: discounted starts satisfy their equations, with errors to scale") {
+  const std::vector<std::vector<double>> h{{0.1, 0.3, 0.2}, {0.05, 0.2, 0.4}, {0.3, 0.1, 0.15}};
+  const double lambda = 0.4;
+  const std::vector<double> f{0.7, -0.2, 1.5};
+  const auto made = [&](double error) {
+    std::vector<quantities::Uncertain> w, values;
+    std::vector<std::vector<quantities::Uncertain>> steps(3);
+    for (std::size_t t = 0; t < 3; ++t) {
+      w.push_back({(1 - h[t][0] - h[t][1] - h[t][2]) / lambda, error});
+      values.push_back({f[t], error});
+      for (double p : h[t]) steps[t].push_back({p, error});
+    }
+    return std::tuple{quantities::DiscountedStarts(lambda, w, steps), w, values};
+  };
+  const auto [starts, w, values] = made(1e-9);
+  const auto mean = starts.mean(values);
+  const auto mu = starts.apart(values);
+  for (std::size_t t = 0; t < 3; ++t) {
+    double left = lambda * w[t].value * mu[t].value;
+    for (std::size_t u = 0; u < 3; ++u) left += h[t][u] * (mu[t].value - mu[u].value);
+    CHECK(left == Approx(f[t] - mean.value * w[t].value).epsilon(1e-12));
+    CHECK(mu[t].error > 1e-9);
+    CHECK(mu[t].error < 1e-7);
+  }
+  CHECK(mean.error > 1e-9);
+  CHECK(mean.error < 1e-7);
+  // What changes by errors stays within them.
+  auto moved = h;
+  moved[0][1] += 1e-9;
+  moved[1][2] -= 1e-9;
+  std::vector<std::vector<quantities::Uncertain>> steps(3);
+  for (std::size_t t = 0; t < 3; ++t) {
+    for (double p : moved[t]) steps[t].push_back({p, 0});
+  }
+  const quantities::DiscountedStarts other(lambda, w, steps);
+  CHECK(std::abs(other.mean(values).value - mean.value) <= mean.error);
+  for (std::size_t t = 0; t < 3; ++t) {
+    CHECK(std::abs(other.apart(values)[t].value - mu[t].value) <= mu[t].error);
   }
 }

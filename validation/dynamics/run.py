@@ -1,4 +1,4 @@
-"""Spectrum of the velocity, Laplace transforms and hitting distribution against references.
+"""Spectrum of the velocity against references.
 
 usage: python3 validation/dynamics/run.py [--quick] [--program build/stickslip]
                                           [--complex-program build/stickslip-complex]
@@ -11,8 +11,6 @@ import cmath
 import itertools
 import pathlib
 import sys
-
-import collocation
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 import known
@@ -70,7 +68,8 @@ def known_spectrum(programs, report, variance):
 
 
 def collocation_spectrum(programs, report, variance, quick):
-    """S_v without the discretisation that the solvers share, where the noise has five levels."""
+    """S_v without the discretisation that the solvers share, where the noise has five levels: digits of a dense
+    Chebyshev collocation with one polynomial of degree 100 in v."""
     low = {0: "0.919664537054", 1: "0.239211472608", 10: "1.51479449146e-4"}
     high = {30: "1.91750941314e-6", 50: "2.4895403e-7"}
     print("\nS_v at delta = tau = 1, mu_d = 1/4\n  omega        collocation  "
@@ -86,12 +85,6 @@ def collocation_spectrum(programs, report, variance, quick):
         for solver in by:
             report.claim(f"{solver} against collocation, {name}, relative", worse(*(
                 difference(v, float(d)) for v, d in zip(values[solver], digits.values()))), 1e-7)
-    if not quick:
-        digits = low | high
-        anew = collocation.spectrum(1, 0.25, digits, degree=100)
-        report.claim("the collocation against its recorded digits, in units of the last",
-                     worse(*(abs(v - float(d)) / last_place(d)
-                             for v, d in zip(anew, digits.values()))), 0.6)
 
 
 def last_seconds(found):
@@ -207,44 +200,6 @@ def white_noise(programs, report, variance, quick):
                      worse(*unresolved), 0.05)
 
 
-def laplace(programs, report):
-    """F_slide and F_stick at lambda = 1, delta = tau = mu_s = 1."""
-    print("\nLaplace transforms of durations at lambda = 1; delta = tau = mu_s = 1")
-    worst, rounded = 0.0, 0.0
-    for mu_d, digits in known.F_1.items():
-        found = programs["real"].run(quantities="laplace", delta=1, mu_d=mu_d, accuracy=1e-11,
-                                     **{"lambda": 1})["results"]
-        values = [found[key]["value"][0] for key in ("F_slide", "F_stick")]
-        reference = collocation.transforms(delta=1, mu_d=mu_d, decay=1, degree=50)
-        for name, value, other in zip(("F_slide", "F_stick"), values, reference):
-            print(f"  mu_d = {mu_d:<5g} {name}  {value:.15f}  by collocation {other:.15f}")
-        worst = worse(worst, *map(difference, values, reference))
-        rounded = worse(rounded, *(abs(v - float(d)) / last_place(d)
-                                   for v, d in zip(reference, digits)))
-    report.claim("F_slide, F_stick against Chebyshev collocation, relative", worst, 1e-10)
-    report.claim("the collocation against its recorded digits, in units of the last", rounded, 0.6)
-
-
-def sticking_density(programs, report, quick):
-    """f_stick(0+) next to Table 1 of the paper."""
-    deltas = (1 / 8,) if quick else (1 / 8, 1 / 16, 1 / 32)
-    print("\nf_stick(0+); in brackets Table 1 of the paper, Kolmogorov/Monte Carlo\n"
-          "  mu_d " + "".join(f"  delta = 1/{1 / d:.0f}".ljust(34) for d in deltas).rstrip())
-    worst, column = 0.0, 0.0
-    for mu_d, row in known.F_STICK_0.items():
-        cells = f"  {mu_d:<5g}"
-        for delta, digits, printed in zip(deltas, row, known.TABLE_1[mu_d]):
-            value = programs["real"].run(quantities="entry_law", mu_d=mu_d, delta=delta,
-                                         accuracy=1e-7)["results"]["f_stick_0"]["value"]
-            cells += f"  {value:<14.9g} ({printed})".ljust(34)
-            worst = worse(worst, abs(value - float(digits)) / last_place(digits))
-            if mu_d < 1:
-                column = worse(column, difference(float(printed.partition("/")[0]), value))
-        print(cells.rstrip(), flush=True)
-    report.claim("f_stick(0+) against known digits, in units of the last one", worst, 0.6)
-    report.claim("Table 1, Kolmogorov, mu_d < mu_s, relative", column, 5e-3)
-
-
 def main():
     options = parser(__doc__)
     options.add_argument("--complex-program", type=pathlib.Path,
@@ -256,8 +211,6 @@ def main():
     collocation_spectrum(programs, report, variance, arguments.quick)
     solvers(programs, report, variance, arguments.quick)
     white_noise(programs, report, variance, arguments.quick)
-    laplace(programs, report)
-    sticking_density(programs, report, arguments.quick)
     variance.claim(report)
     sys.exit(1 if report.failed else 0)
 

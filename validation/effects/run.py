@@ -1,9 +1,8 @@
-"""Effects one by one: bias, unequal drag, derivatives, sweeps, and predictions of their cost.
+"""Effects one by one: bias, unequal drag, sweeps, and predictions of their cost.
 
 Each effect that breaks the symmetry of the paper's model is compared with what it was not computed from. A bias and
 unequal drag: with simulation, for all results that both methods have. The drift E[V] under a bias g without drag:
-with its limit in white noise, 2 g/(mu^2 - g^2), which is known in closed form. Derivatives by parameters, which the
-program solves adjoint equations for: with differences of results at neighbouring parameters, extrapolated twice.
+with its limit in white noise, 2 g/(mu^2 - g^2), which is known in closed form.
 
 In the long form, predicted memory is compared with measured memory, and a sweep with separate runs.
 
@@ -28,7 +27,6 @@ BIASES = (0.1, 0.5, 1.5)  # the last beyond mu_s
 ASKED = "sticking,moments,noise_law,spectrum"
 RATCHET = {"mu_s": 0.5, "mu_d": 0.25, "delta": 0.25, "drag": "expression",
            "drag_expression": "v > 0 ? (0-3)*v : (0-0.5)*v"}
-STEPS = {"mu_d": 0.004, "tau": 0.02, "drag_coefficient": 0.05}
 PREDICTED = (  # cases whose cost does not depend on an adaptive solver
     {"delta": 0.125}, {"delta": 0.0625, "mu_d": 0.25}, {"delta": 0.03125, "accuracy": 1e-8},
     {"delta": 0.0625, "quantities": "sticking,moments,entry_law,laplace", "lambda": "0.1,1,10"},
@@ -87,35 +85,6 @@ def pictures(entry):
                 "to motion that friction only slows down.", swept)
 
 
-def extrapolated(entry, scene, parameter, base, h):
-    """Central differences, extrapolated twice."""
-    differences = []
-    for step in (h, h / 2, h / 4):
-        ends = [scalars(entry.run(**{**scene, parameter: base + s}, accuracy=1e-12))
-                for s in (step, -step)]
-        differences.append({k: (ends[0][k]["value"] - ends[1][k]["value"]) / (2 * step)
-                            for k in ends[0]})
-    coarse, middle, fine = differences
-    return {k: (16 * (4 * fine[k] - middle[k]) - (4 * middle[k] - coarse[k])) / 45 for k in fine}
-
-
-def derivatives(entry):
-    scene = {"mu_s": 1.1, "mu_d": 0.6, "tau": 1, "delta": 0.25, "noise_levels": 31,
-             "drag_coefficient": 1}
-    exact = scalars(entry.run(**scene, quantities="sticking,moments,noise_law,sensitivity",
-                              accuracy=1e-9))
-    rows, far = [], []
-    for parameter, h in STEPS.items():
-        for key, value in extrapolated(entry, scene, parameter, scene[parameter], h).items():
-            name = f"d{key}_d{parameter}"
-            if name in exact:
-                far.append(difference(exact[name]["value"], value))
-                rows.append((name, f"{exact[name]['value']:.12g}", f"{value:.12g}", far[-1]))
-    entry.table("Derivatives by adjoints and by extrapolated differences",
-                ("derivative", "adjoint", "differences", "relative difference"), rows)
-    entry.claim("adjoints from extrapolated differences, relative", worse(*far), 1e-7)
-
-
 def costs(entry):
     """What -plan predicts beside what was spent on the same steps."""
     rows, off = [], []
@@ -160,7 +129,6 @@ def main():
     simulations(entry)
     drift_in_white_noise(entry)
     pictures(entry)
-    derivatives(entry)
     if not entry.quick:
         costs(entry)
         sweep_cost(entry)

@@ -1,7 +1,6 @@
 """The paper's Monte Carlo figure as a table, beside numbers without statistical error.
 
 usage: python3 validation/monte_carlo/run.py [--quick] [--program build/stickslip]
-                                             [--compiler c++]
 
 Prints the tables, then each claim of README.md with its verdict; exit status 1 if one fails.
 --quick takes 10^5 excursions and delta >= 1/8, and times nothing (a minute instead of a
@@ -14,9 +13,7 @@ import math
 import os
 import pathlib
 import statistics
-import subprocess
 import sys
-import tempfile
 import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
@@ -135,62 +132,6 @@ def coverage(program, report, runs):
                        "that hold it", inside[key])
 
 
-class PlainLoop:
-    """plain_loop.cpp, compiled into a folder."""
-
-    def __init__(self, compiler, folder):
-        self.program, self.folder = folder / "plain_loop", folder
-        source = pathlib.Path(__file__).with_name("plain_loop.cpp")
-        words = [compiler, "-O3", "-std=c++17", "-o", str(self.program), str(source)]
-        try:
-            subprocess.run(words, check=True)
-        except (OSError, subprocess.CalledProcessError) as problem:
-            sys.exit(f"plain_loop.cpp is not compiled: {problem}")
-
-    def run(self, mu_d, delta, excursions, seed, factor=1):
-        """The CSV file it wrote, and nanoseconds for each jump."""
-        words = map(str, (self.program, 1, mu_d, 1, delta, excursions, seed, factor))
-        done = subprocess.run(list(words), capture_output=True, text=True, check=True)
-        file = self.folder / f"reference_{factor}.csv"
-        file.write_text(done.stdout)
-        return file, float(done.stderr.split()[0])
-
-
-def comparison(program, plain, report):
-    """-compare with the right process and with jumps 2 % too fast."""
-    for route in ("excursion", "monte_carlo"):
-        for factor in (1, 1.02):
-            file, _ = plain.run(1 / 4, 1 / 4, 10**6, seed=1, factor=factor)
-            found = program.run(mu_d=1 / 4, delta=1 / 4, route=route, compare=file)["comparison"]
-            largest = max(abs(row["z"]) for row in found["rows"])
-            verdict = "disagrees" if found["disagrees"] else "agrees"
-            wanted = "agrees" if factor == 1 else "disagrees"
-            report.verdict(verdict == wanted, f"-compare, -route {route}: plain loop with jumps "
-                           f"{factor:g} times as fast {wanted}",
-                           f"{verdict}, largest |z| {largest:.1f}")
-
-
-def nanoseconds(program, scene, excursions):
-    """For each jump of the noise, all of sticking, moments and noise_law."""
-    cost = program.run(route="monte_carlo", quantities="sticking,moments,noise_law",
-                       excursions=excursions, **scene)["cost"]["simulation"]
-    return 1e9 * cost["seconds"] / cost["jumps"]
-
-
-def speed(program, plain, report):
-    """Against the plain loop, turn by turn, the best of three."""
-    print("\nNanoseconds a jump, best of three\n  delta  plain loop  program  ratio")
-    ratios = []
-    for delta, excursions in ((1 / 2, 10**6), (1 / 32, 2 * 10**4)):
-        scene = {"mu_d": 1 / 4, "delta": delta}
-        turns = [(plain.run(excursions=excursions, seed=turn, **scene)[1],
-                  nanoseconds(program, scene, excursions)) for turn in range(3)]
-        theirs, ours = map(min, zip(*turns))
-        ratios.append(ours / theirs)
-        print(f"  1/{1 / delta:<4g} {theirs:10.1f}  {ours:7.1f}  {ratios[-1]:5.2f}", flush=True)
-    report.claim("nanoseconds a jump over those of the plain loop", worse(*ratios), 1)
-
-
 def idle_cores(seconds=1):
     """How many cores nothing uses, as the kernel counts them for a while."""
     def idle_ticks():
@@ -218,19 +159,12 @@ def two_ranks(program, report):
 
 
 def main():
-    options = parser(__doc__)
-    options.add_argument("--compiler", default="c++", help="for plain_loop.cpp")
-    arguments = options.parse_args()
+    arguments = parser(__doc__).parse_args()
     program, report, quick = Program(arguments.program), Report(), arguments.quick
     rows = figure(program, DELTAS[:3] if quick else DELTAS, 10**5 if quick else 10**6)
     claim_figure(report, rows)
     claim_paper(report, rows)
     coverage(program, report, 100 if quick else 400)
-    with tempfile.TemporaryDirectory() as folder:
-        plain = PlainLoop(arguments.compiler, pathlib.Path(folder))
-        comparison(program, plain, report)
-        if not quick:
-            speed(program, plain, report)
     if not quick:
         two_ranks(program, report)
     sys.exit(1 if report.failed else 0)
