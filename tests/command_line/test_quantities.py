@@ -7,11 +7,11 @@ import unittest
 
 from running import SOURCES, Case, run
 
-SMALL = ("-delta", "0.5", "-mu_d", "0.5", "-accuracy", "1e-1", "-excursions", "2000")  # of monte_carlo
+SMALL = ("-delta", "1", "-mu_d", "0.5", "-accuracy", "1e-1", "-excursions", "2000")  # of monte_carlo
 # With symmetry, without it, and with every parameter of sensitivity.
 MODELS = {"symmetric": (), "biased": ("-bias", "0.2", "-mu_d_minus", "0.4"),
           "stribeck": ("-bias", "0.2", "-friction", "stribeck", "-stribeck_velocity", "0.1")}
-ARGUMENTS = {"-lambda": "0.5,1", "-omega": "0.5,1", "-time": "0.5,1", "-distance": "0.5,1",
+ARGUMENTS = {"-lambda": "0.5,1", "-omega": "0.5,1", "-time": "3,4", "-distance": "0.5,1",
              "-inverse_distance": "0.5,1", "-tilt": "-0.2,0.4", "-wavenumber": "0.5,2", "-probability": "0.5,0.9",
              "-velocity": "0.2,0.4", "-observable": "v^2",
              "-force_file": str(SOURCES / "options" / "given_force.csv")}

@@ -382,31 +382,3 @@ TEST_CASE("durations: variances are those of transforms at small lambda") {
     CHECK(relative_difference(2 * fine - coarse, variances[n].value) < 1e-3);
   }
 }
-
-TEST_CASE("durations: named results, means only where there are none yet") {
-  const auto process = process_with(1.1, 1.1);
-  const quantities::DurationMoments m{{1, 0.1}, {2, 0.1}, {3, 0.1}, {4, 0.1}, {5, 0.1}, {6, 0.1}};
-  const std::vector<Uncertain> entry(5, Uncertain{0.2, 0});
-  quantities::Results results{test::scalar("mean_stick", "time", 7, 0)};
-  quantities::append_duration_moments(process, quantities::Starts::upwards(process), m, entry,
-                                      results);
-  const auto value = [&](const std::string& key) {
-    const auto same = [&key](const auto& result) { return result.key == key; };
-    CHECK(std::count_if(results.begin(), results.end(), same) == 1);
-    return std::find_if(results.begin(), results.end(), same)->value[0];
-  };
-  CHECK(value("mean_slide") == 1);
-  CHECK(value("mean_stick") == 7);
-  CHECK(value("mean_excursion") == 3);
-  CHECK(value("var_slide") == 4);
-  CHECK(value("var_stick") == 5);
-  CHECK(value("var_excursion") == 6);
-  CHECK(value("f_slide_0") == f_slide_at(process));
-  const double edge = process.noise.rate() * process.noise.up(2);
-  CHECK(value("f_stick_0") == Approx(0.4 * edge).epsilon(1e-14));
-  const std::vector<double> time{1, 2};
-  quantities::append_distribution(cases::kDensitySlide, cases::kCdfSlide, time,
-                                  {{{0.5, 0}, {0.25, 0}}, {{0.1, 0}, {0.6, 0}}, 0}, results);
-  CHECK(value("f_slide") == 0.5);
-  CHECK(value("cdf_slide") == 0.1);
-}

@@ -109,24 +109,6 @@ TEST_CASE("laplace: transforms fall with lambda and stay positive") {
   }
 }
 
-TEST_CASE("laplace: without drag hp agrees with the fluid queue") {
-  struct Case {
-    double delta, mu_d;
-  };
-  for (const auto& c : {Case{0.5, 1}, Case{0.25, 1}, Case{0.25, 0.25}, Case{0.125, 0.5}}) {
-    const auto s = scene(1, c.mu_d, 1, c.delta, {0, 0});
-    const auto d = run::discretise(s, run::hp_resolution(s, 9, 0, 1e-11, {30, 0}));
-    Durations durations(d);
-    for (double lambda : {1.0, 30.0}) {
-      const auto found = durations.at(lambda), known = exact_transforms(d.process, lambda);
-      for (const auto member : kAll) {
-        INFO("delta " << c.delta << " mu_d " << c.mu_d << " lambda " << lambda);
-        CHECK(relative_difference((found.*member).value, (known.*member).value) < 1e-9);
-      }
-    }
-  }
-}
-
 // Only excursions much shorter than usual count: values of 1e-30, right relative to their size. The
 // layer of thickness |B|/lambda at v = 0 takes more elements than the mesh has by itself.
 TEST_CASE("laplace: transforms of large lambda have the accuracy of their own size") {

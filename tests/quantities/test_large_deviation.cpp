@@ -181,7 +181,7 @@ TEST_CASE("large deviations: what a truncation velocity leaves out is in the err
 }
 
 TEST_CASE("large deviations: chosen ends reach as far as the weight does", "[real][long]") {
-  const auto s = test::scene(1, 0.5, 1, 0.25, {1, 0});
+  const auto s = test::scene(1, 0.5, 1, 0.2, {1, 0});  // 47 levels of 50
   auto full = s;
   full.noise_levels = s.full_levels();
   const auto chosen = values(asking(s, {1.2}, 1e-6)), known = values(asking(full, {1.2}, 1e-8));

@@ -117,17 +117,15 @@ TEST_CASE("noise levels moved by a constant force are the same process", "[real]
       Quantity::spectrum, Quantity::autocorrelation, Quantity::duration_density};
   const auto s = scene(1, 0.45, 1, 0.5, {1, 0.1});
   const auto expected = values(s, Route::excursion, 1e-9, asked);
-  for (double shift : {0.13, -0.4}) {
-    auto found = values(moved(s, shift), Route::excursion, 1e-9, asked);
-    for (const char* key : {"C_vv", "f_slide", "cdf_slide", "f_excursion", "cdf_excursion",
-                            "variance_from_spectrum"}) {
-      CHECK(found.at(key).value[0] == Approx(expected.at(key).value[0]).epsilon(1e-6));
-      found.at(key) = expected.at(key);
-    }
-    // What depends on x itself.
-    for (const char* key : {"E_XV"}) found.at(key) = expected.at(key);
-    require_close(found, expected, 1e-9);
+  auto found = values(moved(s, -0.4), Route::excursion, 1e-9, asked);
+  for (const char* key :
+       {"C_vv", "f_slide", "cdf_slide", "f_excursion", "cdf_excursion", "variance_from_spectrum"}) {
+    CHECK(found.at(key).value[0] == Approx(expected.at(key).value[0]).epsilon(1e-6));
+    found.at(key) = expected.at(key);
   }
+  // What depends on x itself.
+  for (const char* key : {"E_XV"}) found.at(key) = expected.at(key);
+  require_close(found, expected, 1e-9);
 }
 
 TEST_CASE("noise levels in groups: unsymmetric ones as well as symmetric ones", "[parallel]") {

@@ -272,22 +272,6 @@ TEST_CASE("spectrum: errors of values, width and variance cover those of better 
   }
 }
 
-// b = -v, mu = 1, tau -> 0: closed forms, met as tau, so that two small tau give the limit.
-TEST_CASE("spectrum: the white-noise limit", "[parallel]") {
-  const auto at = [](double tau) {
-    Solved s(test::on_hp(scene(1, 1, tau, 0.25 / std::sqrt(tau), {1, 0}), 6, 1e-9));
-    const auto r = reduced(s, {}, 1e-7);
-    return std::vector<double>{r.spectrum.at_zero.value, 1 / r.shape.full_width.value,
-                               s.mean_square_velocity()};
-  };
-  const auto coarse = at(1.0 / 64), fine = at(1.0 / 256);
-  const std::vector<double> known{0.466391682733, 0.247854704305, 0.474864723839};
-  for (std::size_t n = 0; n < known.size(); ++n) {
-    CHECK(relative_difference(fine[n], known[n]) < 0.012);
-    CHECK(relative_difference((4 * fine[n] - coarse[n]) / 3, known[n]) < 5e-4);
-  }
-}
-
 // S = a/(1 + (omega/w)^4): half of S(0) at w, where S falls at the rate a/w; the variance is
 // (1/pi) a w pi/(2 sqrt 2). The wide one has a part of 1e-5 beyond the last panel.
 TEST_CASE("spectrum: width and variance of a known one, with the errors of its values") {
@@ -309,29 +293,4 @@ TEST_CASE("spectrum: width and variance of a known one, with the errors of its v
 TEST_CASE("spectrum: one that never falls to half has no width") {
   const auto shape = quantities::shape_of([](double) { return 1.0; }, 1, 0, 0);
   CHECK(std::isnan(shape.full_width.value));
-}
-
-TEST_CASE("spectrum: named results") {
-  const quantities::Spectrum spectrum{{2, 0.1}, {{1, 0.01}, {0.5, 0.02}}};
-  quantities::Results results;
-  quantities::append_spectrum({1, 3}, spectrum, results);
-  quantities::append_shape({{4, 0.2}, {0.3, 0.01}}, results);
-  const auto find = [&](const std::string& key) {
-    const auto same = [&key](const auto& result) { return result.key == key; };
-    return *std::find_if(results.begin(), results.end(), same);
-  };
-  CHECK(results.size() == 6);
-  CHECK(find("S_v").abscissa == std::vector<double>{1, 3});
-  CHECK(find("S_v").value == std::vector<double>{1, 0.5});
-  CHECK(find("S_v").error == std::vector<double>{0.01, 0.02});
-  CHECK(find("S_v").each_by_its_size);
-  CHECK(find("S_0").value[0] == 2);
-  CHECK(find("diffusivity").value[0] == 1);
-  CHECK(find("diffusivity").error[0] == 0.05);
-  CHECK(find("t_corr").value[0] == 0.25);
-  CHECK(find("t_corr").error[0] == Approx(0.0125).epsilon(1e-14));
-  CHECK(find("variance_from_spectrum").value[0] == 0.3);
-  results.clear();
-  quantities::append_spectrum({}, {{2, 0.1}, {}}, results);
-  CHECK(results.size() == 2);  // no frequencies, no array
 }

@@ -283,28 +283,6 @@ TEST_CASE("routes: the bias of a fixed lambda is stated, and of first order") {
   }
 }
 
-// Row sums of K vanish and f depends on x alone: the scheme leaves the distribution of the noise as
-// it is.
-TEST_CASE("routes: P(|X| <= mu_s) is the binomial sum at every p") {
-  struct Case {
-    double delta, known;
-  };
-  for (const auto& c : {Case{0.5, 51766.0 / 65536}, Case{0.25, 0.739564523423343}}) {
-    const auto s = test::on_full_noise(scene(1, 0.25, 1, c.delta, {1, 0}));
-    for (int p : {1, 2, 8}) {
-      if (p == 8 && c.delta < 0.5) continue;  // seconds, and nothing new
-      const auto d = test::on_upwind(s, p);
-      const auto exact = evaluate(given(s, Route::null_vector, {Quantity::noise_law}), d);
-      CHECK(relative_difference(result(exact, "P_X_le_mu_s").value[0], c.known) < 1e-12);
-      CHECK(relative_difference(result(exact, "E_X2").value[0], 1) < 1e-12);
-      const auto biased = evaluate(given(s, Route::lambda, {Quantity::noise_law}), d);
-      const auto& within = result(biased, "P_X_le_mu_s");
-      CHECK(std::abs(within.value[0] - c.known) <= within.error[0]);
-      CHECK(within.error[0] < 1e-8);
-    }
-  }
-}
-
 // Psi of the queue has nothing in common with elements in v, which see no speeds beyond theirs.
 TEST_CASE("routes: without drag excursions agree with the fluid queue") {
   // Bounds the probability that rounding loses, and the errors that follow from it: up to 3e-12,
