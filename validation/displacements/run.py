@@ -8,7 +8,7 @@ probability, in units of the standard error of that share and the error of the d
 usage: python3 validation/displacements/run.py [--quick] [--cases N] [--seed N] [--jobs N] [--program build/stickslip]
                                                [--report FOLDER]
 
---quick takes 5 instead of 60, and simulates a third. A case that takes longer than two minutes is left out.
+--quick takes 3 instead of 60, and simulates a third. A case that takes longer than two minutes is left out.
 """
 
 import concurrent.futures
@@ -74,7 +74,7 @@ def main():
     entry = Entry(__doc__, "beyond the paper", ("--cases", {"type": int, "help": "number of cases"}),
                   ("--seed", {"type": int, "default": 1}), ("--jobs", {"type": int, "default": os.cpu_count()}))
     arguments, table, all_rows, left_out = entry.arguments, [], [], {}
-    count = arguments.cases or (5 if entry.quick else 60)
+    count = arguments.cases or (3 if entry.quick else 60)
     with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
         running = [pool.submit(compared, entry, number) for number in range(count)]
         for number, one in enumerate(running):
