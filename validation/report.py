@@ -22,7 +22,7 @@ import pages
 from harness import ROOT, parser, script
 
 CASES = ("paths", "averages", "points", "spectra", "correlation_time", "laplace", "durations",
-         "extrapolation", "limit", "cost", "scan", "effects", "weakening", "noises", "queues", "chains", "slips",
+         "extrapolation", "limit", "cost", "scan", "effects", "weakening", "noises", "queues", "slips",
          "displacements", "fits", "calibration", "metamorphic", "hard", "faults")  # in the order of the paper
 LONGEST = ("displacements", "fits", "noises", "calibration", "metamorphic", "slips", "hard",
            "extrapolation")  # they begin first

@@ -1,14 +1,11 @@
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "../common/catch.hpp"
 #include "../common/full_grid.hpp"
-#include "../common/made_results.hpp"
 #include "../common/near.hpp"
 #include "../common/quadrature.hpp"
 #include "../common/solved.hpp"
-#include "stickslip/case/duration_rows.hpp"
 #include "stickslip/generator/velocity_methods.hpp"
 #include "stickslip/linalg/dense.hpp"
 #include "stickslip/linalg/petsc.hpp"

@@ -27,13 +27,6 @@ Excursion by_hand() {
 // Of levels beyond +-2.
 double beyond() { return model::noise_moments(process().noise, -2, 2).beyond; }
 
-double value(const Results& results, const std::string& key) {
-  for (const auto& r : results) {
-    if (r.key == key) return r.value[0];
-  }
-  throw std::invalid_argument(key);
-}
-
 }  // namespace
 
 TEST_CASE("excursion: the time beyond mu_s is compared with its known share") {
@@ -60,22 +53,6 @@ TEST_CASE("excursion: with a bias levels that stick do not count, on both veloci
   REQUIRE(declined.highest_static() == 3);
   CHECK(e.conservation_defect(on_levels(-0.5)) ==
         Approx(std::abs((1 + 2 + 8) / (127.75 * above) - 1)));
-}
-
-TEST_CASE("excursion: ratios of sums, by hand") {
-  Excursion e = by_hand();
-  Results results;
-  quantities::append_sticking(e, results);
-  quantities::append_moments(on_levels(), e, results);
-  CHECK(value(results, "P_stick") == Approx(90.0 / 118));
-  CHECK(value(results, "P_slide") == Approx(28.0 / 118));
-  CHECK(value(results, "mean_stick") == 90);
-  CHECK(value(results, "mean_slide") == 28);
-  CHECK(value(results, "mean_excursion") == 118);
-  CHECK(value(results, "E_V2") == Approx(8.0 / 118));
-  CHECK(value(results, "E_absV") == Approx(10.875 / 118));
-  // sum_i x_i |V|: -1.5 0.5 - 0.25 - 0.5 0.125 + 0.5 2 + 3 + 1.5 4
-  CHECK(value(results, "E_XV") == Approx((-0.75 - 0.25 - 0.0625 + 1 + 3 + 6) / 118));
 }
 
 TEST_CASE("excursion: a drift is a difference, exact to the size of E|V|") {

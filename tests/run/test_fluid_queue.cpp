@@ -55,54 +55,8 @@ TEST_CASE("fluid queue: sliding ends, and the noise keeps its distribution beyon
   }
 }
 
-// Power balance pi(X V) = mu_d pi(|V|).
-TEST_CASE("fluid queue: power put in by the noise equals power dissipated") {
-  for (double mu_d : {1.0, 0.3, 0.25}) {
-    const auto process = without_drag(0.25, mu_d);
-    const FluidQueue queue(process);
-    double put_in = 0;
-    for (int i = -32; i <= 32; ++i)
-      put_in += process.noise.level(i) * queue.plus().distance[32 + i];
-    CHECK(relative_difference(put_in, mu_d * sum(queue.plus().distance)) < 1e-11);
-  }
-}
-
-TEST_CASE("fluid queue: the transform falls from 1 with the mean duration as its slope") {
-  const auto process = without_drag(0.25, 0.5);
-  const double mean = sum(FluidQueue(process).plus().time);
-  const double h = 1e-5;
-  const double slope = (1 - sum(FluidQueue(process, h).plus().entry)) / h;
-  CHECK(relative_difference(slope, mean) < 1e-3);
-  double before = 1;
-  for (double lambda : {0.01, 0.1, 1.0, 10.0, 1e3}) {
-    const double now = sum(FluidQueue(process, lambda).plus().entry);
-    CHECK(now < before);
-    CHECK(now > 0);
-    before = now;
-  }
-}
-
 TEST_CASE("fluid queue: drag is refused") {
   CHECK_THROWS_AS(FluidQueue({{1, 0.5, 8}, {1, 1}, {1, 0}}), std::invalid_argument);
-}
-
-// Of x, x v and x v^2 over a sliding phase from x_{k+1}; restarts at v = 0 change the sign of x
-// alone, and x v and x v^2 begin and end at 0. Q x = -x/tau.
-TEST_CASE("fluid queue: moments follow one another through the equations of motion") {
-  for (double mu_d : {1.0, 0.3, 0.25}) {
-    const auto process = without_drag(0.25, mu_d);
-    const FluidQueue queue(process);
-    double first = 0, second = 0, size = 0;
-    for (int i = -32; i <= 32; ++i) {
-      const double x = process.noise.level(i), speed = x - mu_d;
-      const auto at = static_cast<std::size_t>(32 + i);
-      first += x * speed * queue.plus().time[at] - x * queue.plus().distance[at];
-      second += 2 * x * speed * queue.plus().distance[at] - x * queue.plus().square[at];
-      size += std::abs(x) * queue.plus().square[at];
-    }
-    CHECK(std::abs(first) < 1e-10 * sum(queue.plus().distance));
-    CHECK(std::abs(second) < 1e-10 * size);
-  }
 }
 
 TEST_CASE("fluid queue: the residual is that of rounding, no less") {

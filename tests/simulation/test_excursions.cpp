@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "../common/catch.hpp"
-#include "../common/simulation.hpp"
 #include "../common/tallies.hpp"
 #include "stickslip/simulation/flow.hpp"
 #include "stickslip/simulation/tally.hpp"
@@ -445,34 +444,6 @@ TEST_CASE(
     };
     CHECK(holds(test::estimate(tally, "P_X_le_mu_s"), within));
     CHECK(holds(test::estimate(tally, "E_X2"), 1 / c.process.noise.tau));
-  }
-}
-
-// Another program of the same process, and one with rates off by two per cent.
-TEST_CASE("excursions: durations agree with a simulation that shares nothing, within 4 sigma") {
-  constexpr int count = 200000;
-  for (const auto& c : processes()) {
-    INFO(c.name);
-    const auto& p = c.process;
-    const auto all = draw(p, {}, count);
-    for (double hurry : {1.0, 1.02}) {
-      test::Simulation other(
-          {p.friction.mu_s, p.friction.mu_d, p.noise.tau, p.noise.delta, p.drag.linear, hurry}, 5);
-      const auto known = other.run(count);
-      std::vector<Excursion> pairs(all);
-      for (std::size_t n = 0; n < pairs.size(); ++n) {
-        pairs[n].slide -= known.slide[n];
-        pairs[n].stick -= known.stick[n];
-      }
-      const double slide = deviation_of_mean(pairs, [](const Excursion& e) { return e.slide; });
-      const double stick = deviation_of_mean(pairs, [](const Excursion& e) { return e.stick; });
-      if (hurry == 1) {
-        CHECK(std::abs(slide) < 4);
-        CHECK(std::abs(stick) < 4);
-      } else {
-        CHECK(std::max(std::abs(slide), std::abs(stick)) > 4);
-      }
-    }
   }
 }
 
