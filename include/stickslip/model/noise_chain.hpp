@@ -51,7 +51,8 @@ struct Shown {
 
   [[nodiscard]] double at(std::size_t place, std::span<const double> by_node) const {
     double sum = 0;
-    for (const auto& [node, share] : of[place]) sum += share * by_node[static_cast<std::size_t>(node)];
+    for (const auto& [node, share] : of[place])
+      sum += share * by_node[static_cast<std::size_t>(node)];
     return sum;
   }
 };
