@@ -30,7 +30,7 @@ class Refusals(Case):
             self.assertIn(part, done.stderr)
 
     def test_values_out_of_range(self):
-        self.refuse("-delta", "-0.5", message=("-delta = -0.5", "(0, inf)"))
+        self.refuse("-delta", "-0.5", message=("-delta = -0.5", "[0, inf)"))
         self.refuse("-mu_d", "2", message=("-mu_d = 2", "[0, mu_s]"))
         self.refuse("-tau", "nan", message=("-tau = nan",))
         self.refuse("-drag_coefficient", "-1", message=("must not grow",))
