@@ -479,12 +479,12 @@ Dense rates_of(double decay, const Along& x, const Across& y) {
 
 // A distribution over nodes is a polynomial times the normal density on each element.
 Shown shown_by(const Along& x, int across, double deviation) {
-  constexpr int count = 201;
-  const double reach = x.z.back(), step = 2 * reach / (count - 1);
+  constexpr int half = 100;
+  const double reach = x.z.back(), step = reach / half;
   Shown shown;
   std::size_t e = 0;
-  for (int i = 0; i < count; ++i) {
-    const double z = i == count - 1 ? reach : step * (i - count / 2);
+  for (int i = -half; i <= half; ++i) {
+    const double z = i == half ? reach : step * i;
     while (e + 1 < x.elements.size() && x.elements[e].second.z.back() < z) ++e;
     const auto& [first, element] = x.elements[e];
     const double mass = step * std::exp(-z * z / 2) / std::sqrt(2 * std::numbers::pi);
