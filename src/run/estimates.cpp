@@ -71,9 +71,8 @@ double shared_error(bool durations, const Changes& errors, const Results& result
   return count == 0 ? 0 : kShared * std::sqrt(squares / count);
 }
 
-double mean_square(const std::vector<double>& values) {
-  const double squares = std::inner_product(values.begin(), values.end(), values.begin(), 0.0);
-  return std::sqrt(squares / std::max<double>(1, static_cast<double>(values.size())));
+double norm(const std::vector<double>& values) {
+  return std::sqrt(std::inner_product(values.begin(), values.end(), values.begin(), 0.0));
 }
 
 // By how much changes of a result, or of its family, are smaller than those before; 1 if unknown.
@@ -92,8 +91,8 @@ class Falls {
     const Result& result = results_[r];
     if (is_mean(result) || result.kind == Kind::share) return families_[is_duration(result)];
     if (before_.size() != changes_.size() || before_[r].size() != changes_[r].size()) return 1;
-    const double then = mean_square(before_[r]);
-    return then > 0 ? mean_square(changes_[r]) / then : 1;
+    const double then = norm(before_[r]);
+    return then > 0 ? norm(changes_[r]) / then : 1;
   }
 
  private:
@@ -185,10 +184,12 @@ Changes add_discretisation(const ErrorPerChange& factor, const Results& coarse,
   }
   const Falls falls(changes, before, results);
   for (std::size_t r = 0; r < results.size(); ++r) {
+    const bool falls_count = factor.of_fall < kInfinity;
+    const double most = falls_count ? factor.of_fall * falls.of(r) : kInfinity;
     for (std::size_t e = 0; e < changes[r].size(); ++e) {
       const auto of = factor_of(results[r], e, factor);
       const bool known = r < before.size() && e < before[r].size();
-      const double last = std::min(of.last, of.of_fall * falls.of(r));
+      const double last = std::min(of.last, most);
       const double both = std::hypot(last * changes[r][e], known ? of.earlier * before[r][e] : 0);
       errors[r].push_back(of.alone * both);
     }

@@ -158,13 +158,15 @@ class Runs(unittest.TestCase):
         self.assertAlmostEqual(sweep["P_stick"].value[1], found[0], delta=1e-12)
 
 
-class OfRecords(unittest.TestCase):
+class Quiet(unittest.TestCase):
     def setUp(self):
         filters = warnings.catch_warnings()
         filters.__enter__()
         self.addCleanup(filters.__exit__)
         warnings.simplefilter("ignore", UserWarning)
 
+
+class OfRecords(Quiet):
     def refused(self, message, *words, function=noise.record, **options):
         self.assertRaisesRegex(ValueError, message, function, *words, **options)
 
@@ -434,13 +436,7 @@ class GaussianNoise(unittest.TestCase):
         self.assertRaisesRegex(ValueError, "amplitude = -0.2", noise.gaussian([(1, 1), (-0.2, 2)]).lattice, 0.5)
 
 
-class GaussianOfRecords(unittest.TestCase):
-    def setUp(self):
-        filters = warnings.catch_warnings()
-        filters.__enter__()
-        self.addCleanup(filters.__exit__)
-        warnings.simplefilter("ignore", UserWarning)
-
+class GaussianOfRecords(Quiet):
     def test_an_exact_covariance_gives_its_terms(self):
         t = 0.02 * numpy.arange(400)
         for terms in ([(0.3, 1.2, 0, 0), (0.7, 0.5, 4, -0.1)], [(0.6, 8, 0, 0), (0.4, 0.7, 0, 0)],

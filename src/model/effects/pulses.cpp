@@ -377,11 +377,12 @@ std::string heading_of_sum(const model::Scene& scene) {
 }
 
 std::string note_of_sum(const model::Scene& scene) {
+  if (scene.noise.gaussian) return "";
   std::vector<std::string> notes;
   for (const auto& word : words_of(scene)) {
     const auto note = noises().of(word).note;
     if (note == nullptr) continue;
-    const std::string said = scene.noise.gaussian ? "" : note(made_part(scene, word));
+    const std::string said = note(made_part(scene, word));
     if (!said.empty()) notes.push_back(said);
   }
   return fmt::format("{}", fmt::join(notes, "; "));
