@@ -122,9 +122,7 @@ class Rules {
            "needs a noise of levels, which " + noise + " has not", "leave it out, or " + levels);
     report("study", study_, "needs a noise of levels, which " + noise + " has not",
            "leave it out, or " + levels);
-    const auto of_levels = wanted([](const auto& entry) {
-      return entry.of_levels || entry.quantity == Quantity::trajectory;
-    });
+    const auto of_levels = wanted([](const auto& entry) { return entry.of_levels; });
     report("quantities", !of_levels.empty(),
            fmt::format("asks for {}, which are found for noises of levels alone, and {} has none",
                        enumerate(of_levels, "and"), noise),

@@ -24,9 +24,7 @@ using generator::StateKind;
 PhaseField::PhaseField(const generator::Discretisation& discretisation,
                        const generator::StateSpace& states, Kind kind)
     : comm_(states.comm()),
-      shown_(discretisation.process.noise.has_levels()
-                 ? nullptr
-                 : discretisation.process.noise.table->shown()),
+      shown_(discretisation.process.noise.shown()),
       noise_(discretisation.noise),
       lowest_(discretisation.process.noise.lowest()),
       kind_(kind),
@@ -188,7 +186,7 @@ DensityField density_field(const StationaryDistribution& distribution) {
       {},
       speed_distribution(distribution).at_top};
   const auto& chain = process.noise;
-  const auto* shown = chain.has_levels() ? nullptr : chain.table->shown();
+  const auto* shown = chain.shown();
   const bool several = shown == nullptr && !chain.neighbours_only();
   for (int i = chain.lowest(); i <= chain.highest() && several; ++i) {
     field.states.push_back(static_cast<double>(chain.table->listed(i)));

@@ -103,6 +103,7 @@ inline constexpr Entry kTrajectory{.quantity = Quantity::trajectory,
                                        "a simulated path in the file of -output or -trajectory",
                                    .routes = {Route::excursion, Route::monte_carlo},
                                    .options = "start, horizon, seed",
+                                   .of_levels = true,
                                    .without_system = true,
                                    .of_one_run = true};
 

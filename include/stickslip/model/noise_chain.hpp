@@ -224,6 +224,8 @@ struct NoiseChain {
   [[nodiscard]] double level(int i) const { return table ? table->at(i).x : i * delta; }
   /// Whether the levels are those of the noise, and not nodes of a process of continuous paths.
   [[nodiscard]] bool has_levels() const { return !table || !table->continuous(); }
+  /// The forces at which a distribution is shown; null where these are the levels.
+  [[nodiscard]] const Shown* shown() const { return table ? table->shown() : nullptr; }
   /// Whether all jumps are to neighbouring levels.
   [[nodiscard]] bool neighbours_only() const { return !table || table->neighbours_only(); }
   /// Calls visit(level, rate) for the jumps from level i, from the lowest one up.
