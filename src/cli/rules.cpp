@@ -112,38 +112,56 @@ class Rules {
 
   // What asks for levels where there are none.
   void of_continuous_paths() {
-    if (!r_.scene.noise.gaussian || !settings_.sound()) return;
-    const std::string noise = "-noise " + r_.scene.noise.name;
-    const std::string levels =
-        effects::noises().knows(r_.scene, "delta")
-            ? fmt::format("give -delta, such as {:.3g}, for levels", r_.scene.delta)
-            : "take -noise ou";
-    report("route", r_.method.route != Route::excursion || r_.method.scheme != Scheme::hp,
-           "needs a noise of levels, which " + noise + " has not", "leave it out, or " + levels);
-    report("study", study_, "needs a noise of levels, which " + noise + " has not",
-           "leave it out, or " + levels);
+    if (r_.scene.projector() == nullptr || !settings_.sound()) return;
+    const std::string option =
+        r_.scene.spring ? "-spring_stiffness" : "-noise " + r_.scene.noise.name;
+    std::string way = "take -noise ou";
+    if (r_.scene.spring) {
+      way = "leave -spring_stiffness out";
+    } else if (effects::noises().knows(r_.scene, "delta")) {
+      way = fmt::format("give -delta, such as {:.3g}, for levels", r_.scene.delta);
+    }
+    const std::string why = "needs a noise of levels alone, which " + option + " has not";
+    report("route", r_.method.route != Route::excursion || r_.method.scheme != Scheme::hp, why,
+           "leave it out, or " + way);
+    report("study", study_, why, "leave it out, or " + way);
     const auto of_levels = wanted([](const auto& entry) { return entry.of_levels; });
     report("quantities", !of_levels.empty(),
            fmt::format("asks for {}, which are found for noises of levels alone, and {} has none",
-                       enumerate(of_levels, "and"), noise),
-           "leave that out, or " + levels);
+                       enumerate(of_levels, "and"), option),
+           "leave that out, or " + way);
     const bool starts = std::ranges::any_of(cases::entries(), [this](const auto* entry) {
       return q_.wants(entry->quantity) && entry->takes("start");
     });
-    report("start", starts && q_.start.kind == model::Start::Kind::state,
-           fmt::format("is one level, and {} has none", noise),
-           "add -start rest or -start stationary");
+    const bool state = q_.start.kind == model::Start::Kind::state;
+    report("start", starts && state, fmt::format("is one level, and {} has none", option),
+           r_.scene.spring ? "add -start stationary" : "add -start rest or -start stationary");
+    of_springs(starts && q_.start.kind == model::Start::Kind::rest);
     if (!r_.scene.meant().starts_at_balance()) return;
-    const std::string why = "mu_d = mu_s, where noise of continuous paths brings bodies to rest "
-                            "infinitely often at once";
+    const std::string at_once =
+        "mu_d = mu_s, where noise of continuous paths brings bodies to rest "
+        "infinitely often at once";
     const auto of_phases = wanted(
         [](const auto& entry) { return entry.of_phases && entry.quantity != Quantity::sticking; });
     report("quantities", !of_phases.empty(),
-           fmt::format("asks for {}, but {}", enumerate(of_phases, "and"), why),
+           fmt::format("asks for {}, but {}", enumerate(of_phases, "and"), at_once),
            "leave that out, or take a smaller -mu_d");
     if (q_.wants(Quantity::sticking)) {
-      r_.warnings.push_back("mean durations are left out: " + why + ", so that they are 0");
+      r_.warnings.push_back("mean durations are left out: " + at_once + ", so that they are 0");
     }
+  }
+
+  // What loses its meaning where a spring holds the body.
+  void of_springs(bool from_rest) {
+    if (!r_.scene.spring) return;
+    const auto travels = wanted([](const auto& entry) { return entry.of_travel; });
+    report("quantities", !travels.empty(),
+           fmt::format("asks for {}, and a spring keeps the body in one place: its displacement "
+                       "does not grow with time",
+                       enumerate(travels, "and")),
+           "leave that out");
+    report("start", from_rest, "does not say at which position of the spring the body rests",
+           "add -start stationary");
   }
 
   // What the quantities need, or exclude.

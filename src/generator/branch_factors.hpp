@@ -153,15 +153,18 @@ class BranchFactors {
     Matrix own(held, held), jumps(held, below);
     for (int l = 0; l < held; ++l) {
       own(l, l) = shift_.at(velocities_.v_max());
-      for (const auto& [to, rate] : noise_.jumps(noise_.first() + below + l)) {
+      const auto leave = [&](int to, double rate) {
         const int place = to - noise_.first();
         own(l, l) += rate;
         if (place < below) {
-          jumps(l, place) = rate;
+          jumps(l, place) += rate;
         } else {
           own(l, place - below) -= rate;
         }
-      }
+      };
+      const int node = noise_.first() + below + l;
+      for (const auto& [to, rate] : noise_.jumps(node)) leave(to, rate);
+      for (const auto& [to, rate] : noise_.carried(node)) leave(to, rate * velocities_.v_max());
     }
     Factors factors(std::move(own));
     factors.solve(jumps);

@@ -170,14 +170,20 @@ DenseMatrix<Scalar> contracted(std::span<const double> c, int nodes, const Dense
   return y;
 }
 
-// rates x 1, rates by rows, `count` of them: the same at each of the nodes.
+// rates x 1 + per_distance x speeds, both by rows, `count` of them; at each of the nodes.
 template <class Scalar>
-DenseMatrix<Scalar> at_each(std::span<const double> rates, int count, int nodes) {
-  const int columns = static_cast<int>(rates.size()) / count;
+DenseMatrix<Scalar> at_each(std::span<const double> rates, std::span<const double> per_distance,
+                            std::span<const double> speeds, int count) {
+  const int columns = static_cast<int>(rates.size()) / count,
+            nodes = static_cast<int>(speeds.size());
   DenseMatrix<Scalar> a(count * nodes, columns * nodes);
   for (int l = 0; l < count; ++l) {
     for (int c = 0; c < columns; ++c) {
-      for (int m = 0; m < nodes; ++m) a(l * nodes + m, c * nodes + m) = rates[l * columns + c];
+      const std::size_t place = static_cast<std::size_t>(l) * columns + c;
+      const double carried = per_distance.empty() ? 0 : per_distance[place];
+      for (int m = 0; m < nodes; ++m) {
+        a(l * nodes + m, c * nodes + m) = rates[place] + carried * speeds[m];
+      }
     }
   }
   return a;
@@ -216,13 +222,15 @@ template <class Scalar>
 class ElementSystem<Scalar>::Elimination {
  public:
   /// `rates` of the own nodes among each other: by noise node, q x q by rows, zero diagonals. The
-  /// first `rising_inner`, `rising_outer` nodes fall at the ends. `lambda` is by velocity node.
+  /// first `rising_inner`, `rising_outer` nodes fall at the ends. `speeds`, `lambda`: by velocity
+  /// node.
   Elimination(const ElementSystem& system, const Nodes& noise, std::vector<double> rates,
-              Scalars lambda, int rising_inner, int rising_outer)
+              std::span<const double> speeds, Scalars lambda, int rising_inner, int rising_outer)
       : s_(system),
         q_(system.nodes_),
         noise_(noise),
         rates_(std::move(rates)),
+        speeds_(speeds),
         lambda_(std::move(lambda)) {
     for (int l = 0; l < s_.count_; ++l) {
       (l < rising_inner ? inner_in_ : inner_out_)
@@ -262,7 +270,12 @@ class ElementSystem<Scalar>::Elimination {
         const Group& below = groups_[g - 1];
         contract(below, below.noise->at_last(), below.last, steps);
         const int rank = rank_of(below.noise->at_last(), below);
-        for (int r = 0; r < rank; ++r) {
+        const auto& carried = group.noise->carried_below;
+        if (!carried.empty()) {
+          steps.add(at_each<Scalar>(group.noise->to_below, carried, speeds_, group.count),
+                    below.last, at(group));
+        }
+        for (int r = 0; carried.empty() && r < rank; ++r) {
           std::vector<double> rates;
           for (int l = 0; l < group.count; ++l) {
             rates.push_back(group.noise->to_below[static_cast<std::size_t>(l) * rank + r]);
@@ -329,6 +342,14 @@ class ElementSystem<Scalar>::Elimination {
         if (column < 0 || column >= group.count) continue;
         for (int m = 0; m < q_; ++m) a(l * q_ + m, column * q_ + m) -= rate;
       }
+      for (const auto& [to, rate] : noise_.carried(node)) {
+        const int column = to - group.noise->begin;
+        const bool here = column >= 0 && column < group.count;
+        for (int m = 0; m < q_; ++m) {
+          a(l * q_ + m, l * q_ + m) += rate * speeds_[m];
+          if (here) a(l * q_ + m, column * q_ + m) -= rate * speeds_[m];
+        }
+      }
       for (int m = 0; m < q_; ++m) {
         const int row = l * q_ + m;
         const std::size_t place = at(group) + row;
@@ -345,21 +366,24 @@ class ElementSystem<Scalar>::Elimination {
   }
 
   // (to_below x 1) returns (at_first x 1) from the block of a group.
-  void subtract(const Group& group, const std::vector<double>& to_below, const Matrix& returns,
-                Matrix& a) const {
+  void subtract(const Group& group, const Matrix& returns, Matrix& a) const {
     const auto first = group.noise->at_first();
+    const auto &to_below = group.noise->to_below, &carried = group.noise->carried_below;
     const int below = returns.rows() / q_, here = returns.columns() / q_;
+    std::vector<double> shares(static_cast<std::size_t>(q_));
     for (int l = 0; l < group.count; ++l) {
       for (int s = 0; s < below; ++s) {
-        const double rate = to_below[l * below + s];
-        if (rate == 0) continue;
+        const double rate = to_below[l * below + s],
+                     per_distance = carried.empty() ? 0 : carried[l * below + s];
+        if (rate == 0 && per_distance == 0) continue;
         for (int r = 0; r < here; ++r) {
           for (int k = 0; k < group.count; ++k) {
-            const double share = rate * first[r * group.count + k];
+            const double share = first[r * group.count + k];
             if (share == 0) continue;
+            for (int m = 0; m < q_; ++m) shares[m] = (rate + per_distance * speeds_[m]) * share;
             for (int n = 0; n < q_; ++n) {
               for (int m = 0; m < q_; ++m) {
-                a(l * q_ + m, k * q_ + n) -= share * returns(s * q_ + m, r * q_ + n);
+                a(l * q_ + m, k * q_ + n) -= shares[m] * returns(s * q_ + m, r * q_ + n);
               }
             }
           }
@@ -373,15 +397,16 @@ class ElementSystem<Scalar>::Elimination {
     for (std::size_t g = 0; g < groups_.size(); ++g) {
       Group& group = groups_[g];
       Matrix a = block(group);
-      const auto& to_below = group.noise->to_below;
-      if (g > 0) subtract(group, to_below, returns, a);
+      if (g > 0) subtract(group, returns, a);
       group.factors = linalg::LuFactors<Scalar>(std::move(a));
       if (g > 0) {
-        group.to_before = at_each<Scalar>(to_below, group.count, q_);
+        group.to_before = at_each<Scalar>(group.noise->to_below, group.noise->carried_below,
+                                          speeds_, group.count);
         group.factors.solve(group.to_before);
       }
       if (g + 1 < groups_.size()) {
-        group.to_next = at_each<Scalar>(group.noise->to_above, group.count, q_);
+        group.to_next = at_each<Scalar>(group.noise->to_above, group.noise->carried_above, speeds_,
+                                        group.count);
         group.factors.solve(group.to_next);
         returns = contracted(group.noise->at_last(), q_, group.to_next);
       }
@@ -484,6 +509,7 @@ class ElementSystem<Scalar>::Elimination {
   int q_;
   const Nodes& noise_;
   std::vector<double> rates_;
+  std::span<const double> speeds_;  // of the nodes of the element
   Scalars lambda_;
   std::vector<Takes> ports_;  // by noise node
   int inputs_ = 0, outputs_ = 0;
@@ -532,10 +558,9 @@ ElementSystem<Scalar>::ElementSystem(const Nodes& noise, const HpDiscretisation&
     if (l < rising_outer) given_.outer[place] = reference.at_right[m];
   }
   Scalars by_node;
-  for (double v : velocities.nodes().subspan(static_cast<std::size_t>(first_), q)) {
-    by_node.push_back(shift.at(v));
-  }
-  Elimination elimination(*this, noise, std::move(rates), std::move(by_node), rising_inner,
+  const auto speeds = velocities.nodes().subspan(static_cast<std::size_t>(first_), q);
+  for (double v : speeds) by_node.push_back(shift.at(v));
+  Elimination elimination(*this, noise, std::move(rates), speeds, std::move(by_node), rising_inner,
                           rising_outer);
   response = elimination.response();
   steps_ = elimination.steps();

@@ -341,14 +341,14 @@ linalg::VecHandle KolmogorovOperator::values(const Observable& f) const {
   states().for_each_local([&](const State& s) {
     const int sign = s.branch == Branch::positive ? 1 : -1;
     if (s.kind == StateKind::static_phase) {
-      local[at++] = f(chain.level(s.noise), 0, 0);
+      local[at++] = f(chain.noise(s.noise), 0, 0);
       return;
     }
     double v = 0;
     if (s.kind == StateKind::node) v = sign * velocities.nodes()[s.node];
     if (s.kind == StateKind::holding) v = sign * velocities.v_max();
     local[at++] = nodes_along(s.branch).projected(
-        s.noise, [&](int i) { return f(chain.level(sign * i), sign, v); });
+        s.noise, [&](int i) { return f(chain.noise(sign * i), sign, v); });
   });
   return result;
 }
@@ -364,7 +364,7 @@ linalg::VecHandle KolmogorovOperator::overlooked(const Observable& f) const {
       PetscInt at = first - states().local_begin();
       const auto of_speed = [&](double speed) {
         return nodes_along(branch).projected(n, [&](int i) {
-          return f(discretisation().process.noise.level(sign * i), sign, sign * speed);
+          return f(discretisation().process.noise.noise(sign * i), sign, sign * speed);
         });
       };
       for (const double value : discretisation().velocities->overlooked(of_speed)) {

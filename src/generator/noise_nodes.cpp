@@ -181,11 +181,15 @@ void Nodes::take_all_levels() {
   std::vector<int> reach(static_cast<std::size_t>(count));  // the furthest place either way
   for (int n = 0; n < count; ++n) {
     x_.push_back(noise_.level(first_ + n));
-    noise_.for_each_jump(first_ + n, [&](int to, double rate) {
-      jumps_[n].push_back({to, rate});
+    const auto take = [&](std::vector<Rate>& rates, int to, double rate) {
+      rates.push_back({to, rate});
       const int low = std::min(n, to - first_), high = std::max(n, to - first_);
       reach[low] = std::max(reach[low], high);
-    });
+    };
+    noise_.for_each_jump(first_ + n, [&](int to, double rate) { take(jumps_[n], to, rate); });
+    if (!noise_.has_positions()) continue;
+    carried_.emplace_back();
+    noise_.for_each_carried(first_ + n, [&](int to, double rate) { take(carried_[n], to, rate); });
   }
   for (int begin = 0, furthest = 0; begin < count;) {
     int end = std::max(begin, furthest) + 1;
@@ -200,31 +204,38 @@ void Nodes::take_all_levels() {
     begin = end;
   }
   for (std::size_t g = 0; g + 1 < groups_.size(); ++g) {
-    couple(groups_[g], groups_[g + 1], groups_[g].to_above, groups_[g + 1].from_below);
-    couple(groups_[g + 1], groups_[g], groups_[g + 1].to_below, groups_[g].from_above);
+    Group &below = groups_[g], &above = groups_[g + 1];
+    couple(below, above, below.to_above, below.carried_above, above.from_below);
+    couple(above, below, above.to_below, above.carried_below, below.from_above);
   }
 }
 
 // The rates from one group to the levels of another one to which it jumps, and these levels.
 void Nodes::couple(const Group& from, const Group& to, std::vector<double>& rates,
-                   std::vector<double>& levels) const {
+                   std::vector<double>& per_distance, std::vector<double>& levels) const {
   std::vector<int> place(static_cast<std::size_t>(to.count), -1);
   int reached = 0;
-  const auto for_each = [&](auto visit) {
+  const auto for_each = [&](auto row, auto visit) {
     for (int l = 0; l < from.count; ++l) {
-      for (const auto& [node, rate] : jumps(from.begin + l)) {
+      for (const auto& [node, rate] : (this->*row)(from.begin + l)) {
         if (node >= to.begin && node < to.begin + to.count) visit(l, node - to.begin, rate);
       }
     }
   };
-  for_each([&](int, int there, double) { place[there] = 0; });
+  const auto mark = [&](int, int there, double) { place[there] = 0; };
+  for_each(&Nodes::jumps, mark);
+  for_each(&Nodes::carried, mark);
   for (int& p : place) p = p < 0 ? p : reached++;
-  rates.assign(static_cast<std::size_t>(from.count) * reached, 0.0);
   levels.assign(static_cast<std::size_t>(reached) * place.size(), 0.0);
-  for_each([&](int l, int there, double rate) {
-    rates[static_cast<std::size_t>(l) * reached + place[there]] += rate;
-    levels[static_cast<std::size_t>(place[there]) * place.size() + there] = 1;
-  });
+  const auto collect = [&](auto row, std::vector<double>& sums) {
+    sums.assign(static_cast<std::size_t>(from.count) * reached, 0.0);
+    for_each(row, [&](int l, int there, double rate) {
+      sums[static_cast<std::size_t>(l) * reached + place[there]] += rate;
+      levels[static_cast<std::size_t>(place[there]) * place.size() + there] = 1;
+    });
+  };
+  collect(&Nodes::jumps, rates);
+  if (!carried_.empty()) collect(&Nodes::carried, per_distance);
 }
 
 // Around level 0, those below as the mirror shows them.

@@ -93,7 +93,10 @@ class RowAssembler {
     }
     const std::vector<int>& local = states_.local_noise();
     entries *= local.size();
-    for (int n : local) entries += noise_.jumps(n).size() * upper_.velocities.nodes().size();
+    for (int n : local) {
+      entries +=
+          (noise_.jumps(n).size() + noise_.carried(n).size()) * upper_.velocities.nodes().size();
+    }
     entries *= states_.branches().size();
     columns.reserve(entries);
     values.reserve(entries);
@@ -129,6 +132,11 @@ class RowAssembler {
     rates_of_transport(s);
     for_each_jump(s.branch, s.noise,
                   [&](int to, double rate) { rate_to(node(s.branch, to, s.node), rate); });
+    if (derivative_) return;
+    const double speed = upper_.velocities.nodes()[s.node];
+    for (const auto& [to, rate] : side(s.branch).noise.carried(s.noise)) {
+      rate_to(node(s.branch, to, s.node), speed * rate);
+    }
   }
 
   void rates_of_transport(const State& s) {
@@ -158,10 +166,15 @@ class RowAssembler {
   }
 
   void rates_of_holding(const State& s) {
-    for_each_jump(s.branch, s.noise, [&](int to, double rate) {
+    const auto leave = [&](int to, double rate) {
       if (states_.has_holding(s.branch, to)) return rate_to(holding(s.branch, to), rate);
       for (const auto& e : top_trace_) rate_to(node(s.branch, to, e.node), rate * e.value);
-    });
+    };
+    for_each_jump(s.branch, s.noise, leave);
+    if (derivative_) return;
+    for (const auto& [to, rate] : side(s.branch).noise.carried(s.noise)) {
+      leave(to, upper_.velocities.v_max() * rate);
+    }
   }
 
   void rates_at_rest(int i) {

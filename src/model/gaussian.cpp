@@ -9,6 +9,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "force_elements.hpp"
 #include "stickslip/base/text.hpp"
 
 namespace stickslip::model {
@@ -161,220 +162,6 @@ void GaussianNoise::find_matrix() {
 
 namespace {
 
-// Gauss-Lobatto rules for the normal density.
-
-struct LegendreRule {
-  std::vector<double> node, weight;  // on [-1, 1]
-
-  explicit LegendreRule(int size) {
-    std::vector<double> beside;
-    for (int n = 1; n < size; ++n) beside.push_back(n / std::sqrt(4.0 * n * n - 1));
-    linalg::TridiagonalEigen eigen(std::vector<double>(static_cast<std::size_t>(size), 0.0),
-                                   beside);
-    node = std::move(eigen.value);
-    for (int n = 0; n < size; ++n) weight.push_back(2 * std::pow(eigen.vectors(0, n), 2));
-  }
-};
-
-/// Nodes z and weights w of the rule with both ends, exact for polynomials of degree 2 p - 1, and
-/// the derivatives D_kl of its cardinal functions l at its nodes k.
-struct Element {
-  std::vector<double> z, w;
-  Dense d;
-
-  Element(double low, double high, int p) : z{low}, d(p + 1, p + 1) {
-    static const LegendreRule fine(80);
-    const double middle = (low + high) / 2, half = (high - low) / 2;
-    std::vector<double> points, weights, inner;
-    for (std::size_t n = 0; n < fine.node.size(); ++n) {
-      const double x = middle + half * fine.node[n];
-      points.push_back(x);
-      weights.push_back(half * fine.weight[n] * std::exp(-x * x / 2) /
-                        std::sqrt(2 * std::numbers::pi));
-      inner.push_back(weights.back() * (x - low) * (high - x));
-    }
-    // The inner nodes are those of Gauss for the weight that vanishes at both ends.
-    if (p > 1) {
-      const auto found = linalg::GaussRule(points, inner, p - 1).node;
-      z.insert(z.end(), found.begin(), found.end());
-    }
-    z.push_back(high);
-    find_derivatives();
-    // As sums of positive terms: l_k^2 has the degree 2 p, one too many, for inner nodes l_k^2 over
-    // a factor that vanishes at an end has not.
-    for (int k = 0; k <= p; ++k) {
-      const double end = k == 0 ? high : low;
-      double sum = 0;
-      for (std::size_t n = 0; n < points.size(); ++n) {
-        double square = weights[n] * (points[n] - end) / (z[k] - end);
-        if (k > 0 && k < p) square *= (high - points[n]) / (high - z[k]);
-        for (int l = 1; l < p; ++l) {
-          if (l != k) square *= std::pow((points[n] - z[l]) / (z[k] - z[l]), 2);
-        }
-        sum += square;
-      }
-      w.push_back(sum);
-    }
-  }
-
-  /// The cardinal function of a node.
-  [[nodiscard]] double cardinal(std::size_t k, double at) const {
-    double product = 1;
-    for (std::size_t l = 0; l < z.size(); ++l) {
-      if (l != k) product *= (at - z[l]) / (z[k] - z[l]);
-    }
-    return product;
-  }
-
- private:
-  void find_derivatives() {
-    const int size = static_cast<int>(z.size());
-    std::vector<double> scale(z.size(), 1.0);
-    for (int k = 0; k < size; ++k) {
-      for (int l = 0; l < size; ++l) {
-        if (l != k) scale[k] /= z[k] - z[l];
-      }
-    }
-    for (int k = 0; k < size; ++k) {
-      for (int l = 0; l < size; ++l) {
-        if (l == k) continue;
-        d(k, l) = scale[l] / scale[k] / (z[k] - z[l]);
-        d(k, k) -= d(k, l);
-      }
-    }
-  }
-};
-
-/// Ends of elements and their degrees.
-struct Mesh {
-  std::vector<double> ends;
-  std::vector<int> degrees;
-};
-
-struct Special {
-  double z;
-  double size;  // of the elements beside it
-  bool balance;
-};
-
-// What spans more than a factor of eight in the distance to a special point is split there, what is
-// long is cut into equal parts.
-void split_element(const std::vector<Special>& special, double low, double high,
-                   std::vector<double>& ends) {
-  constexpr double longest = 3, ratio = 6, most = 8, enough = 1.5;
-  const double length = high - low;
-  int graded = 0;
-  double at = 0;
-  for (const auto& s : special) {
-    if ((s.z != low && s.z != high) || length <= enough * s.size) continue;
-    ++graded;
-    at = s.z == low ? low + length / ratio : high - length / ratio;
-  }
-  if (graded > 1) at = (low + high) / 2;
-  for (const auto& s : special) {
-    if (graded > 0 || s.z == low || s.z == high) continue;
-    const double near = std::min(std::abs(low - s.z), std::abs(high - s.z)),
-                 far = std::max(std::abs(low - s.z), std::abs(high - s.z));
-    if (far <= most * near) continue;
-    graded = 1;
-    at = s.z + std::copysign(std::sqrt(near * far), low - s.z);
-  }
-  if (graded == 0 && length > longest) {
-    graded = 1;
-    at = low + length / std::ceil(length / longest);
-  }
-  if (graded == 0) return ends.push_back(high);
-  split_element(special, low, at, ends);
-  split_element(special, at, high, ends);
-}
-
-// Far from the balance points and the end points functions are smooth.
-Mesh mesh_of(const std::vector<Special>& special, double reach, int degree) {
-  std::vector<double> points{-reach};
-  for (const auto& s : special) {
-    if (std::abs(s.z) < reach) points.push_back(s.z);
-  }
-  points.push_back(reach);
-  std::sort(points.begin(), points.end());
-  Mesh mesh{{-reach}, {}};
-  for (std::size_t n = 1; n < points.size(); ++n) {
-    if (points[n] > points[n - 1]) split_element(special, points[n - 1], points[n], mesh.ends);
-  }
-  // What is short beside a balance point needs few digits.
-  constexpr int least = 3;
-  const int count = static_cast<int>(mesh.ends.size()) - 1;
-  mesh.degrees.assign(static_cast<std::size_t>(count), degree);
-  for (const auto& s : special) {
-    if (!s.balance) continue;
-    const auto found = std::lower_bound(mesh.ends.begin(), mesh.ends.end(), s.z);
-    const int at = static_cast<int>(found - mesh.ends.begin());
-    for (int e = 0; e < count; ++e) {
-      const int apart = e >= at ? e - at : at - 1 - e;
-      mesh.degrees[e] = std::min(mesh.degrees[e], std::max(std::min(least, degree), least + apart));
-    }
-  }
-  return mesh;
-}
-
-/// Functions of the force on the nodes of a mesh: weights W, <Du, Dv> and <v, Du>. Nodes at cuts
-/// are doubled and tied together.
-struct Along {
-  std::vector<double> z, w;
-  Dense stiffness, slope;
-  std::vector<int> cuts;                          // the upper of both nodes
-  std::vector<std::pair<int, Element>> elements;  // with the first of their nodes
-
-  Along(const Mesh& mesh, const std::vector<double>& at)
-      : stiffness(nodes_of(mesh, at), nodes_of(mesh, at)),
-        slope(stiffness.rows(), stiffness.rows()) {
-    std::vector<double> lengths;
-    for (std::size_t e = 0; e < mesh.degrees.size(); ++e) {
-      const bool cut = std::find(at.begin(), at.end(), mesh.ends[e]) != at.end();
-      if (cut) {
-        cuts.push_back(static_cast<int>(z.size()));
-        lengths.push_back(mesh.ends[e + 1] - mesh.ends[e]);
-      }
-      append({mesh.ends[e], mesh.ends[e + 1], mesh.degrees[e]}, cut || e == 0);
-    }
-    for (std::size_t n = 0; n < cuts.size(); ++n) tie(cuts[n], lengths[n]);
-  }
-
-  [[nodiscard]] static int nodes_of(const Mesh& mesh, const std::vector<double>& cuts) {
-    return std::accumulate(mesh.degrees.begin(), mesh.degrees.end(), 1) +
-           static_cast<int>(cuts.size());
-  }
-
- private:
-  // With a first node of its own, or that of the element before.
-  void append(const Element& element, bool own) {
-    const int p = element.d.rows() - 1, shared = own ? 0 : 1,
-              first = static_cast<int>(z.size()) - shared;
-    if (!own) w.back() += element.w[0];
-    z.insert(z.end(), element.z.begin() + shared, element.z.end());
-    w.insert(w.end(), element.w.begin() + shared, element.w.end());
-    for (int k = 0; k <= p; ++k) {
-      for (int l = 0; l <= p; ++l) {
-        slope(first + k, first + l) += element.w[k] * element.d(k, l);
-        for (int n = 0; n <= p; ++n) {
-          stiffness(first + l, first + n) += element.w[k] * element.d(k, l) * element.d(k, n);
-        }
-      }
-    }
-    elements.emplace_back(first, element);
-  }
-
-  // A jump costs that much more than a change within the element: results are off by its inverse,
-  // and rounding grows with it.
-  void tie(int node, double length) {
-    constexpr double penalty = 1e9;
-    const double rate = penalty / length * std::sqrt(w[node] * w[node - 1]);
-    for (const auto& [r, c] : {std::pair{node, node - 1}, {node - 1, node}}) {
-      stiffness(r, c) -= rate;
-      stiffness(r, r) += rate;
-    }
-  }
-};
-
 using Modes = std::vector<std::vector<int>>;
 
 // The degrees of products of so many Hermite polynomials, below a total degree; all zero first.
@@ -457,7 +244,7 @@ struct Across {
 };
 
 // The generator, by points across within nodes along the force; diagonals without meaning.
-Dense rates_of(double decay, const Along& x, const Across& y) {
+Dense rates_of(double decay, const AlongForce& x, const Across& y) {
   const int along = static_cast<int>(x.w.size()), across = static_cast<int>(y.weight.size());
   Dense rates(along * across, along * across);
   for (int l = 0; l < along; ++l) {
@@ -478,16 +265,14 @@ Dense rates_of(double decay, const Along& x, const Across& y) {
 }
 
 // A distribution over nodes is a polynomial times the normal density on each element.
-Shown shown_by(const Along& x, int across, double deviation) {
+Shown shown_by(const AlongForce& x, int across, double deviation) {
   constexpr int half = 100;
   const double reach = x.z.back(), step = reach / half;
   Shown shown;
-  std::size_t e = 0;
   for (int i = -half; i <= half; ++i) {
     const double z = i == half ? reach : step * i;
-    while (e + 1 < x.elements.size() && x.elements[e].second.z.back() < z) ++e;
-    const auto& [first, element] = x.elements[e];
-    const double mass = step * std::exp(-z * z / 2) / std::sqrt(2 * std::numbers::pi);
+    const auto& [first, element] = x.element_at(z);
+    const double mass = step * normal_weight(z);
     shown.x.push_back(deviation * z);
     shown.of.emplace_back();
     for (std::size_t k = 0; k < element.z.size(); ++k) {
@@ -500,8 +285,6 @@ Shown shown_by(const Along& x, int across, double deviation) {
   return shown;
 }
 
-constexpr double kApart = 1e-9;  // of the nodes on both sides of a start, in deviations
-
 constexpr int kMostNodes = 6000;
 constexpr double kOften = 1.5;
 
@@ -510,13 +293,13 @@ double turns(const Dense& a) { return a.rows() > 1 ? std::abs(a(0, 1)) / a(0, 0)
 
 /// Elements along the force, with cuts where bodies start, and modes across.
 struct Layout {
-  Mesh mesh;
+  ForceMesh mesh;
   std::vector<double> cuts;
   double finest;  // element
   Modes modes;
 
   [[nodiscard]] int nodes() const {
-    return Along::nodes_of(mesh, cuts) * static_cast<int>(modes.size());
+    return AlongForce::nodes_of(mesh, cuts) * static_cast<int>(modes.size());
   }
 };
 
@@ -542,7 +325,7 @@ Layout layout_of(const Dense& a, double deviation, const Thresholds& thresholds,
   Layout made{{}, {}, std::max({apart, together, least}), {}};
   // Beyond 5, 6 and 7 deviations lie 1e-5, 1e-7 and 1e-10 of E[X^2].
   const double reach = std::min(7.0, 3.5 + order / 2.0);
-  std::vector<Special> special;
+  std::vector<SpecialForce> special;
   for (int side : {0, 1}) {
     const double start = thresholds.start[side] / deviation,
                  balance = thresholds.balance[side] / deviation;
@@ -551,7 +334,8 @@ Layout layout_of(const Dense& a, double deviation, const Thresholds& thresholds,
     if (!one) special.push_back({balance, made.finest, true});
     if (std::abs(start) < reach) made.cuts.push_back(start);
   }
-  made.mesh = mesh_of(special, reach, along);
+  constexpr double longest = 3;
+  made.mesh = force_mesh(special, reach, longest, along);
   made.modes = modes_below(factors, across);
   return made;
 }
@@ -573,7 +357,7 @@ std::shared_ptr<const LevelTable> GaussianNoise::projected(const Thresholds& thr
     throw UnfitTable(terms_.size(), fmt::format("the terms take {} nodes, and at most {} are taken",
                                                 grid.nodes(), kMostNodes));
   }
-  const Along x(grid.mesh, grid.cuts);
+  const AlongForce x(grid.mesh, grid.cuts, normal_weight);
   const Across y(a_, grid.modes);
   Projection made;
   made.deviation = deviation_;
@@ -584,15 +368,7 @@ std::shared_ptr<const LevelTable> GaussianNoise::projected(const Thresholds& thr
   const auto mirrored = [](const std::array<double, 2>& at) { return at[0] == -at[1]; };
   made.even = mirrored(thresholds.start) && mirrored(thresholds.balance);
   made.reversed = made.even && a_.rows() <= 2;
-  std::vector<double> force;
-  for (double z : x.z) force.push_back(deviation_ * z);
-  for (int node : x.cuts) {
-    // The outer node is the one that does not stick.
-    const bool upper = thresholds.start[1] / deviation_ == x.z[node];
-    const double start = thresholds.start[upper ? 1 : 0], beyond = kApart * deviation_;
-    force[node - 1] = upper ? start : start - beyond;
-    force[node] = upper ? start + beyond : start;
-  }
+  const auto force = x.forces(deviation_, thresholds.start[1], thresholds.start[0]);
   const double total = std::accumulate(x.w.begin(), x.w.end(), 0.0);
   for (std::size_t k = 0; k < x.w.size(); ++k) {
     for (double weight : y.weight) {

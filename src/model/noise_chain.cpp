@@ -138,7 +138,20 @@ LevelTable LevelTable::of(const Projection& projection) {
   table.step_ = projection.step;
   table.even_ = projection.even;
   table.reversed_ = projection.reversed;
-  table.shown_ = std::make_shared<const Shown>(projection.shown);
+  table.projected_ = true;
+  table.continuous_ = projection.continuous;
+  if (!projection.shown.x.empty()) table.shown_ = std::make_shared<const Shown>(projection.shown);
+  table.position_ = projection.position;
+  table.noise_ = projection.noise;
+  if (table.has_positions()) {
+    for (auto [part, of] : {std::pair{&table.upwards_, &projection.upwards},
+                            {&table.downwards_, &projection.downwards}}) {
+      part->resize(projection.x.size());
+      for (const auto& [from, to, rate] : *of) {
+        (*part)[from].push_back({static_cast<int>(to), rate});
+      }
+    }
+  }
   for (double x : projection.x) table.levels_.push_back({x, 0, 0});
   for (const auto& [from, to, rate] : projection.transitions) {
     table.jumps_[from].push_back({static_cast<int>(to), rate});
@@ -286,10 +299,17 @@ LevelTable LevelTable::mirrored() const {
     other.levels_[n] = {-x, down, up};
   }
   const int last = static_cast<int>(levels_.size()) - 1;
-  std::reverse(other.jumps_.begin(), other.jumps_.end());
-  for (auto& row : other.jumps_) {
-    std::reverse(row.begin(), row.end());
-    for (auto& jump : row) jump.to = last - jump.to;
+  for (auto* jumps : {&other.jumps_, &other.upwards_, &other.downwards_}) {
+    std::reverse(jumps->begin(), jumps->end());
+    for (auto& row : *jumps) {
+      std::reverse(row.begin(), row.end());
+      for (auto& jump : row) jump.to = last - jump.to;
+    }
+  }
+  std::swap(other.upwards_, other.downwards_);
+  for (auto* values : {&other.position_, &other.noise_}) {
+    std::reverse(values->begin(), values->end());
+    for (double& value : *values) value = -value;
   }
   std::reverse(other.probability_.begin(), other.probability_.end());
   std::reverse(other.order_.begin(), other.order_.end());

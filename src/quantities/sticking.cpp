@@ -43,6 +43,19 @@ double Excursion::mean_drift(const generator::Nodes& noise) const {
 
 double Excursion::conservation_defect(const generator::Discretisation& discretisation) const {
   const auto& [process, noise, velocities] = discretisation;
+  if (process.noise.has_positions()) {
+    // E[P V] = 0, as p^2 is represented.
+    const model::Process sides[] = {process, process.mirrored()};
+    double sum = 0, size = 0;
+    for (std::size_t n = 0; n < slide_distance.size(); ++n) {
+      const int place = static_cast<int>(n), count = noise->count();
+      const auto& chain = sides[place < count ? 0 : 1].noise;
+      const double part = chain.position(chain.lowest() + place % count) * slide_distance[n];
+      sum += part;
+      size += std::abs(part);
+    }
+    return std::abs(sum) / size + lost_probability * lost_probability;
+  }
   if (!process.sticks()) {
     const auto seen = marginal_of_noise(discretisation, *this),
                exact = model::stationary_distribution(process.noise);
@@ -179,13 +192,51 @@ void append_moments(const generator::Discretisation& discretisation, const Excur
   results.push_back(scalar(cases::kEAbsV, sum(excursion.slide_distance) / total, 0));
   results.push_back(scalar(cases::kEXV, force_times_velocity / total, 0));
   // A difference of the two velocity branches: exact to the size of E|V|.
-  const bool drifts = discretisation.process.drifts();
+  const bool drifts =
+      discretisation.process.drifts() && !discretisation.process.noise.has_positions();
   const double rounding = excursion.conservation_defect(discretisation) * sum(distance);
   results.push_back(scalar(cases::kEV, drifts ? excursion.mean_drift(noise) / total : 0,
                            drifts ? rounding / total : 0));
 }
 
-void moments_tasks(Planner& planner) { planner.append_from(append_moments); }
+namespace {
+
+// What the spring adds: sums over all nodes, in motion on either branch and at rest.
+void append_positions(const model::Process& process, const Excursion& excursion, Results& results) {
+  double p = 0, square = 0, with_noise = 0;
+  const auto add = [&](const model::NoiseChain& chain, int i, double sign, double time) {
+    const double position = chain.position(i);
+    p += sign * position * time;
+    square += position * position * time;
+    with_noise += chain.noise(i) * position * time;
+  };
+  const auto other = process.mirrored().noise;
+  const auto count = static_cast<std::size_t>(process.noise.count());
+  for (std::size_t n = 0; n < excursion.slide_time.size(); ++n) {
+    const bool upper = n < count;
+    const auto& chain = upper ? process.noise : other;
+    add(chain, chain.lowest() + static_cast<int>(n % count), upper ? 1 : -1,
+        excursion.slide_time[n]);
+  }
+  for (std::size_t n = 0; n < excursion.stick_time.size(); ++n) {
+    add(process.noise, process.lowest_static() + static_cast<int>(n), 1, excursion.stick_time[n]);
+  }
+  const double total = excursion.mean_excursion();
+  results.push_back(scalar(cases::kEP, process.drifts() ? p / total : 0, 0));
+  results.push_back(scalar(cases::kEP2, square / total, 0));
+  results.push_back(scalar(cases::kEXP, with_noise / total, 0));
+}
+
+}  // namespace
+
+void moments_tasks(Planner& planner) {
+  planner.append_from([](const auto& discretisation, const Excursion& excursion, Results& results) {
+    append_moments(discretisation, excursion, results);
+    if (discretisation.process.noise.has_positions()) {
+      append_positions(discretisation.process, excursion, results);
+    }
+  });
+}
 
 void append_hitting_distribution(const model::Process& process, const Excursion& excursion,
                                  Results& results) {
@@ -224,7 +275,7 @@ double stick_density_at_zero(const model::Process& process, const std::vector<do
 void append_noise_distribution(const model::Process& process, Results& results) {
   const auto& noise = process.noise;
   const double mu_s = process.friction.mu_s;
-  if (!noise.has_levels()) {
+  if (noise.continuous()) {
     const double sigma = noise.standard_deviation(),
                  within = std::erf(mu_s / sigma / std::numbers::sqrt2);
     results.push_back(
@@ -233,7 +284,16 @@ void append_noise_distribution(const model::Process& process, Results& results) 
         scalar(cases::kEX2, sigma * sigma, std::numeric_limits<double>::epsilon() * sigma * sigma));
     return;
   }
-  const auto moments = model::noise_moments(noise, noise.first_from(-mu_s), noise.last_up_to(mu_s));
+  auto moments = model::noise_moments(noise, noise.first_from(-mu_s), noise.last_up_to(mu_s));
+  if (noise.has_positions()) {
+    const auto p = model::stationary_distribution(noise);
+    moments.within = moments.square = 0;
+    for (int i = noise.lowest(); i <= noise.highest(); ++i) {
+      const double x = noise.noise(i), share = p[static_cast<std::size_t>(i - noise.lowest())];
+      moments.within += std::abs(x) <= mu_s ? share : 0;
+      moments.square += share * x * x;
+    }
+  }
   const double rounding = model::rounding_of_sums(noise);
   results.push_back(scalar(cases::kPWithin, moments.within, rounding * moments.within));
   results.push_back(scalar(cases::kEX2, moments.square, rounding * moments.square));
@@ -296,7 +356,7 @@ Integral integral(const StationaryDistribution& distribution, double defect,
   double change = 0, size = 0;
   for (std::size_t n = 0; n < now.size(); ++n) {
     const int level = process.lowest_static() + static_cast<int>(n);
-    const double at_rest = part(process.noise.level(level), 0, 0);
+    const double at_rest = part(process.noise.noise(level), 0, 0);
     sum.stick.value += now[n] * at_rest;
     change += (now[n] - before[n]) * at_rest;
     size += now[n] * std::abs(at_rest);

@@ -149,7 +149,7 @@ namespace {
 
 void set_levels(const model::Scene& scene, double tolerance, const generator::Rates& rates,
                 Resolution& r) {
-  if (scene.noise.gaussian) {
+  if (scene.projector() != nullptr) {
     r.levels = std::max(r.degree, 2);
     r.table_levels = scene.process(r.levels).noise.count();
     return;

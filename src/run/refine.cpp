@@ -120,8 +120,8 @@ RefinementSequence::RefinementSequence(const cases::Case& given)
   tail_counts_ =
       !given.question.observables.empty() || given.question.any(&cases::Entry::weighs_tail);
   last_ = method_.fixed() ? 1 : free_refinement_levels();
-  if (const auto& gaussian = scene_.noise.gaussian) {
-    while (last_ > 1 && !gaussian->fits(scene_.thresholds(), degree(last_))) --last_;
+  if (const auto* projector = scene_.projector()) {
+    while (last_ > 1 && !projector->fits(scene_.thresholds(), degree(last_))) --last_;
   }
 }
 
@@ -212,9 +212,9 @@ ErrorPerChange RefinementSequence::error_per_change(int n) const {
     factor.last *= degrees;
     factor.earlier *= degrees;
     if (!waves_.empty()) factor.waves_from = std::ranges::min(waves_);
-    if (const auto& gaussian = scene_.noise.gaussian) {
+    if (const auto* projector = scene_.projector()) {
       factor.last *= kLastOfProjections;
-      if (gaussian->damped()) {
+      if (projector->damped()) {
         factor.earlier *= kEarlierOfProjections;
         factor.of_fall = kFallOfProjections;
         factor.most_fall = kInfinity;
@@ -252,7 +252,7 @@ Solved evaluated(MPI_Comm comm, const cases::Case& given, const Resolution& reso
   quantities::leave_out_missing_side(problem.discretisation.process, solved.evaluation.results);
   quantities::leave_out_uncountable(problem.discretisation.process, solved.evaluation.results);
   // Of nodes tied together where bodies start, see GaussianNoise::projected().
-  const double tied = problem.discretisation.process.noise.has_levels() ? 0 : 2e-7;
+  const double tied = problem.discretisation.process.noise.continuous() ? 2e-7 : 0;
   const double rounding = tied + model::rounding_of_sums(problem.discretisation.process.noise);
   require_least_error(rounding + resolution.truncation, solved.evaluation.results);
   step.checks = std::move(solved.evaluation.checks);

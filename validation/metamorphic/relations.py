@@ -69,7 +69,8 @@ def mirror(options, random):
         elif name == "levels":
             other[name] = [(-x, down, up) for x, up, down in reversed(value)]
         elif name == "noise" and isinstance(value, noise.Chain):
-            other[name] = -1 * value
+            # In the reverse order, as levels of equal force keep that of the list.
+            other[name] = noise.Chain(-value.x[::-1], value.rates[::-1][:, ::-1])
         elif name == "pulse_sign" or name == "passage":
             other[name] = {"up": "down", "down": "up"}.get(value, value)
         elif name == "drag_expression":
@@ -103,6 +104,10 @@ def mirror(options, random):
     return other, back
 
 
+# Integrals over time of an observable, of which the program does not know the unit.
+OVER_TIME = {"u(f)", "u_minus(f)", "w_plus(f)", "w_minus(f)", "mu(f)", "mu_minus(f)"}
+
+
 def other_units(options, random):
     """Time and length in units that are powers of four: only exponents of numbers change, also in square roots."""
     time, length = (2.0 ** random.choice((-30, -8, 6, 20)) for _ in range(2))
@@ -128,7 +133,10 @@ def other_units(options, random):
         elif unit:
             value = tuple(each * size(unit) for each in value) if isinstance(value, tuple) else value * size(unit)
         other[name] = value
-    return other, lambda key, value, answer: (key, value * (1 / size(answer.units[key])))
+
+    def back(key, value, answer):
+        return key, value * (1 / size("time" if key in OVER_TIME else answer.units[key]))
+    return other, back
 
 
 def permuted(options, random):

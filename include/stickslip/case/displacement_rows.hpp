@@ -33,7 +33,8 @@ inline constexpr Entry kDisplacement{.quantity = Quantity::displacement,
                                      .routes = {Route::excursion, Route::monte_carlo},
                                      .options = "time, start",
                                      .rows = kDisplacementRows,
-                                     .degrees_besides = 0};
+                                     .degrees_besides = 0,
+                                     .of_travel = true};
 
 // The quantity displacement_transform: characteristic function of the displacement.
 
@@ -72,6 +73,7 @@ inline constexpr Entry kDisplacementTransform{
     .arguments = kDisplacementTransformArguments,
     .rows = kDisplacementTransformRows,
     .of_levels = true,
+    .of_travel = true,
     .weighs_tail = true,
     .both_branches = true};
 
@@ -143,6 +145,7 @@ inline constexpr Entry kDisplacementDistribution{
     .rows = kDisplacementDistributionRows,
     .usual_accuracy = 0.01,
     .of_levels = true,
+    .of_travel = true,
     .weighs_tail = true,
     .both_branches = true};
 
@@ -192,6 +195,7 @@ inline constexpr Entry kLargeDeviation{
     .arguments = kLargeDeviationArguments,
     .rows = kLargeDeviationRows,
     .degrees_besides = 4,
+    .of_travel = true,
     .unbounded = "E[exp(s x(t))] grows faster than any exp(theta t), as a body that is once fast "
                  "travels far: theta is infinite for s != 0",
     .instead = "take displacement and diffusivity, or a drag that grows",

@@ -96,7 +96,32 @@ inline constexpr Row kEV{.key = "E_V",
                          .kind = Kind::drift,
                          .asks = true};
 
-inline constexpr const Row* kMomentsRows[] = {&kEV2, &kEAbsV, &kEXV, &kEV};
+inline constexpr Row kEP{.key = "E_P",
+                         .symbol = "E[P]",
+                         .definition = "mean position of a body on a spring",
+                         .unit = "length",
+                         .convention =
+                             "with -spring_stiffness K only; E[X + g]/K where friction is "
+                             "the same to both sides",
+                         .kind = Kind::drift,
+                         .asks = true};
+inline constexpr Row kEP2{.key = "E_P2",
+                          .symbol = "E[P^2]",
+                          .definition = "second moment of the position",
+                          .unit = "length^2",
+                          .convention = "about 0, with -spring_stiffness K only; K E_P2/2 is the "
+                                        "mean potential energy per unit mass",
+                          .kind = Kind::positive_mean,
+                          .asks = true};
+inline constexpr Row kEXP{.key = "E_XP",
+                          .symbol = "E[X P]",
+                          .definition = "mean product of noise and position",
+                          .unit = "force*length",
+                          .convention = "with -spring_stiffness only; tau E[X V] under -noise ou",
+                          .kind = Kind::mean,
+                          .asks = true};
+
+inline constexpr const Row* kMomentsRows[] = {&kEV2, &kEAbsV, &kEXV, &kEV, &kEP, &kEP2, &kEXP};
 
 inline constexpr Entry kMoments{.quantity = Quantity::moments,
                                 .word = "moments",

@@ -56,6 +56,8 @@ class Nodes {
     std::vector<double> value, weight;  ///< P and T, levels x nodes by rows
     /// Rates into the next groups, nodes x levels reached there by rows.
     std::vector<double> to_above, to_below;
+    /// The same per distance that the body moves upwards; empty where it has no position.
+    std::vector<double> carried_above = {}, carried_below = {};
     /// P on the levels to which the group below jumps, and on those to which the group above does,
     /// levels x nodes by rows: on the first and on the last one, where these are not given.
     std::vector<double> from_below = {}, from_above = {};
@@ -97,6 +99,10 @@ class Nodes {
   };
   /// The row of J at a node without its diagonal, rising.
   [[nodiscard]] std::span<const Rate> jumps(int node) const { return jumps_[at(node)]; }
+  /// The same per distance of a body that moves upwards: of its position, where it has one.
+  [[nodiscard]] std::span<const Rate> carried(int node) const {
+    return carried_.empty() ? std::span<const Rate>() : std::span<const Rate>(carried_[at(node)]);
+  }
   /// The same of T^T (dQ/d tau) P, at a fixed number of levels. O(levels of the group).
   [[nodiscard]] std::vector<Rate> jumps_by_tau(int node) const;
 
@@ -131,7 +137,7 @@ class Nodes {
   }
   void take_all_levels();
   void couple(const Group& from, const Group& to, std::vector<double>& rates,
-              std::vector<double>& levels) const;
+              std::vector<double>& per_distance, std::vector<double>& levels) const;
   void join(const Upper& above, const Upper& below);
   void find_jumps();
 
@@ -142,7 +148,7 @@ class Nodes {
   std::vector<std::vector<double>> inner_;  // by group of several levels: rates inside, by rows
   std::vector<std::size_t> group_of_;       // by node
   std::vector<double> x_;
-  std::vector<std::vector<Rate>> jumps_;
+  std::vector<std::vector<Rate>> jumps_, carried_;
   std::shared_ptr<const Nodes> mirrored_;
 };
 

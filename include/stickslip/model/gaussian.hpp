@@ -1,10 +1,8 @@
 #pragma once
 /// Stationary Gaussian noise with a rational spectrum, of continuous paths.
 
-#include <array>
 #include <map>
 #include <memory>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -25,16 +23,6 @@ struct CovarianceTerm {
 /// int Cov(X_0, X_t) exp(-i omega t) dt over all t of a sum of terms [force^2 time]; exact.
 [[nodiscard]] double power_spectral_density(const std::vector<CovarianceTerm>& terms, double omega);
 
-/// Forces at which functions of the noise are not smooth: where bodies at rest start to move, and
-/// where friction balances the force on those that slide; downwards and upwards.
-struct Thresholds {
-  std::array<double, 2> start, balance;
-
-  friend bool operator<(const Thresholds& a, const Thresholds& b) {
-    return std::tie(a.start, a.balance) < std::tie(b.start, b.balance);
-  }
-};
-
 /// X = deviation Z_1, dZ = -A Z dt + noise with E[Z Z^T] = 1: all Gaussian noise of which the
 /// covariance is a finite sum of terms. With a_i = d/dz_i and its adjoint a_i^+ in L^2 of the
 /// normal density the generator is
@@ -45,7 +33,7 @@ struct Thresholds {
 /// exp(-A t) e_1, by two-sided Lanczos: tridiagonal, so that A = (1/tau) for an
 /// Ornstein-Uhlenbeck process and ((decay, -frequency), (frequency, decay)) for a narrow band.
 /// Immutable but for a store of projections; local.
-class GaussianNoise {
+class GaussianNoise final : public Projector {
  public:
   /// Throws UnfitTable, with the term in row(), where the terms are no covariance, or where paths
   /// are so smooth that the projection does not hold: less than 1/200 of what couples Z_1 to Z_2
@@ -54,8 +42,7 @@ class GaussianNoise {
 
   [[nodiscard]] const std::vector<CovarianceTerm>& terms() const { return terms_; }
   [[nodiscard]] double deviation() const { return deviation_; }
-  /// Whether the noise is damped about as fast as it turns, which a narrow band is not.
-  [[nodiscard]] bool damped() const;
+  [[nodiscard]] bool damped() const override;
   [[nodiscard]] double power_spectral_density(double omega) const {
     return model::power_spectral_density(terms_, omega);
   }
@@ -69,9 +56,9 @@ class GaussianNoise {
   /// sticks and what slides meet there. Degrees, modes and elements grow with `order` >= 2. O(nodes
   /// * nodes of an element), kept for the next call. Throws UnfitTable unless fits().
   [[nodiscard]] std::shared_ptr<const LevelTable> projected(const Thresholds& thresholds,
-                                                            int order) const;
+                                                            int order) const override;
   /// Whether the nodes of an order are at most 6000.
-  [[nodiscard]] bool fits(const Thresholds& thresholds, int order) const;
+  [[nodiscard]] bool fits(const Thresholds& thresholds, int order) const override;
 
  private:
   void find_matrix();

@@ -1,12 +1,14 @@
 #pragma once
 /// The noise X: a Markov chain.
 
+#include <array>
 #include <cstddef>
 #include <memory>
 #include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <tuple>
 #include <vector>
 
 namespace stickslip::model {
@@ -57,16 +59,49 @@ struct Shown {
   }
 };
 
-/// Nodes that stand for a noise of continuous paths. Rates between them may have any sign.
+/// Nodes that stand for a noise of continuous paths, or for a noise and the position of a body on
+/// a spring. Rates between them may have any sign.
 struct Projection {
-  std::vector<double> x = {}, probability = {};  ///< rising; positive, of sum 1
+  /// The force on the body, rising; positive and of sum 1, about what is found there.
+  std::vector<double> x = {}, probability = {};
   std::vector<Transition> transitions = {};
+  /// With positions: rates per distance by which a body changes nodes as it moves to either side,
+  /// each over all places; the position of each node, and the noise without the spring there.
+  std::vector<Transition> upwards = {}, downwards = {};
+  std::vector<double> position = {}, noise = {};
   double deviation = 0;                      ///< of the noise itself [force]
   double intensity = 0, peak_intensity = 0;  ///< at the frequency 0, and the largest
   double step = 0;                           ///< of the finest element [force]
   double rate = 0;                           ///< with which step^2 rate is the diffusivity of X
   bool even = false, reversed = false;       ///< as LevelTable has them
+  bool continuous = true;                    ///< whether the paths of the noise are
   Shown shown = {};
+};
+
+/// Forces at which functions of the noise are not smooth: where bodies at rest start to move, and
+/// where friction balances the force on those that slide; downwards and upwards.
+struct Thresholds {
+  std::array<double, 2> start, balance;
+
+  friend bool operator<(const Thresholds& a, const Thresholds& b) {
+    return std::tie(a.start, a.balance) < std::tie(b.start, b.balance);
+  }
+};
+
+class LevelTable;
+
+/// What is solved on nodes, more of them with each order.
+class Projector {
+ public:
+  virtual ~Projector() = default;
+  /// The generator on nodes, for the thresholds of its scene; order >= 2. Kept for the next call.
+  /// Throws UnfitTable unless fits().
+  [[nodiscard]] virtual std::shared_ptr<const LevelTable> projected(const Thresholds& thresholds,
+                                                                    int order) const = 0;
+  /// Whether the nodes of an order are few enough.
+  [[nodiscard]] virtual bool fits(const Thresholds& thresholds, int order) const = 0;
+  /// Whether the noise is damped about as fast as it turns, which a narrow band is not.
+  [[nodiscard]] virtual bool damped() const = 0;
 };
 
 /// A chain that reaches each of its levels from each other one, by jumps to the neighbours or,
@@ -98,8 +133,10 @@ class LevelTable {
     return levels_[static_cast<std::size_t>(place)];
   }
 
-  /// Whether these are nodes of a noise of continuous paths.
-  [[nodiscard]] bool continuous() const { return shown_ != nullptr; }
+  /// Whether these are the levels of a noise, and not nodes of a projection.
+  [[nodiscard]] bool has_levels() const { return !projected_; }
+  /// Whether they are nodes of a noise of continuous paths.
+  [[nodiscard]] bool continuous() const { return continuous_; }
   /// The forces at which a distribution over these nodes is shown; null for levels.
   [[nodiscard]] const Shown* shown() const { return shown_.get(); }
   /// Whether all jumps are to neighbours.
@@ -116,6 +153,23 @@ class LevelTable {
     }
     if (i > lowest()) visit(i - 1, at(i).down);
     if (i < highest()) visit(i + 1, at(i).up);
+  }
+  /// Whether the body has a position, which its motion changes.
+  [[nodiscard]] bool has_positions() const { return !position_.empty(); }
+  /// Calls visit(level, rate per distance) for the changes of a body that moves upwards.
+  template <class Visit>
+  void for_each_carried(int i, Visit visit) const {
+    if (!has_positions()) return;
+    for (const auto& [to, rate] : upwards_[static_cast<std::size_t>(i - lowest_)]) {
+      visit(lowest_ + to, rate);
+    }
+  }
+  [[nodiscard]] double position(int i) const {
+    return position_[static_cast<std::size_t>(i - lowest_)];
+  }
+  /// The noise on a level: its x, or with positions what that is without the spring.
+  [[nodiscard]] double noise(int i) const {
+    return has_positions() ? noise_[static_cast<std::size_t>(i - lowest_)] : at(i).x;
   }
   /// Probability of level i against that of level i - 1.
   [[nodiscard]] double weight_ratio(int i) const {
@@ -181,7 +235,10 @@ class LevelTable {
   double upper_tail_ = 0, lower_tail_ = 0;
   double mean_ = 0, variance_ = 0, intensity_ = 0, rate_ = 0, step_ = 0;
   bool even_ = true, reversed_ = true;
+  bool projected_ = false, continuous_ = false;
   std::shared_ptr<const Shown> shown_;
+  std::vector<std::vector<Jump>> upwards_, downwards_;  // by place, per distance
+  std::vector<double> position_, noise_;
 };
 
 /// Levels that are no such chain: what() says why, row() in which of them, from 0; in none
@@ -223,7 +280,19 @@ struct NoiseChain {
   /// x_i [force].
   [[nodiscard]] double level(int i) const { return table ? table->at(i).x : i * delta; }
   /// Whether the levels are those of the noise, and not nodes of a process of continuous paths.
-  [[nodiscard]] bool has_levels() const { return !table || !table->continuous(); }
+  [[nodiscard]] bool has_levels() const { return !table || table->has_levels(); }
+  /// Whether these nodes are of a noise of continuous paths.
+  [[nodiscard]] bool continuous() const { return table && table->continuous(); }
+  /// Whether the body has a position.
+  [[nodiscard]] bool has_positions() const { return table && table->has_positions(); }
+  [[nodiscard]] double position(int i) const { return table->position(i); }
+  /// The noise alone, without a spring.
+  [[nodiscard]] double noise(int i) const { return table ? table->noise(i) : i * delta; }
+  /// Calls visit(level, rate per distance) for what a motion upwards changes.
+  template <class Visit>
+  void for_each_carried(int i, Visit visit) const {
+    if (table) table->for_each_carried(i, visit);
+  }
   /// The forces at which a distribution is shown; null where these are the levels.
   [[nodiscard]] const Shown* shown() const { return table ? table->shown() : nullptr; }
   /// Whether all jumps are to neighbouring levels.

@@ -17,6 +17,7 @@
 #include "stickslip/model/drag.hpp"
 #include "stickslip/model/gaussian.hpp"
 #include "stickslip/model/noise_chain.hpp"
+#include "stickslip/model/spring.hpp"
 
 namespace stickslip::model {
 
@@ -92,7 +93,7 @@ struct Process {
   /// durations are 0.
   [[nodiscard]] bool starts_at_balance() const {
     const auto at_once = [](const Friction& f) { return f.at_rest() == f.mu_s; };
-    return !noise.has_levels() && (at_once(friction) || at_once(friction.mirrored()));
+    return noise.continuous() && (at_once(friction) || at_once(friction.mirrored()));
   }
   /// Whether bodies stick on level i.
   [[nodiscard]] bool sticks(int i) const { return lowest_static() <= i && i <= highest_static(); }
@@ -237,6 +238,8 @@ struct Scene {
   Drag drag;
   Parameters own = {};  ///< values of its noise or laws that have no place above
   double bias = 0;      ///< constant force g
+  /// What ties the body to p = 0, and takes the bias.
+  std::shared_ptr<const Spring> spring = {};
   std::shared_ptr<const ForceRecord> force = {};  ///< a given one, beside the noise or without it
   std::optional<int> noise_levels;                ///< N, if fixed by the user
   std::optional<double> v_max;                    ///< truncation velocity, if fixed by the user
@@ -245,9 +248,13 @@ struct Scene {
   [[nodiscard]] bool symmetric() const { return process(1).symmetric(); }
   /// The order of projections where none is chosen by an accuracy.
   static constexpr int kMeantOrder = 5;
+  /// What is solved on nodes in the place of levels; null where there is nothing of that kind.
+  [[nodiscard]] const Projector* projector() const {
+    return spring ? static_cast<const Projector*>(spring.get()) : noise.gaussian.get();
+  }
   /// The range that is meant when noise_levels is open: full_range(), or that of the table.
   [[nodiscard]] int full_levels() const {
-    if (noise.gaussian) return kMeantOrder;
+    if (projector() != nullptr) return kMeantOrder;
     return noise.table ? std::max(-noise.table->lowest(), noise.table->highest())
                        : full_range(tau, delta, noise.deviation);
   }
@@ -257,9 +264,9 @@ struct Scene {
     Process all{{tau, delta, levels, noise.deviation, noise.table},
                 friction,
                 with_weakening(drag, friction),
-                bias};
-    if (noise.gaussian) {
-      all.noise.table = noise.gaussian->projected(thresholds(), std::max(levels, 2));
+                spring ? 0 : bias};
+    if (projector() != nullptr) {
+      all.noise.table = projector()->projected(thresholds(), std::max(levels, 2));
     } else if (noise.table && levels < full_levels()) {
       all.noise.table = std::make_shared<const LevelTable>(noise.table->within(
           std::min(-levels, all.lowest_static() - 1), std::max(levels, all.highest_static() + 1)));
@@ -268,8 +275,9 @@ struct Scene {
   }
   [[nodiscard]] Thresholds thresholds() const {
     const Friction other = friction.mirrored();
-    return {{-other.mu_s - bias, friction.mu_s - bias},
-            {-other.at_rest() - bias, friction.at_rest() - bias}};
+    const double constant = spring ? 0 : bias;
+    return {{-other.mu_s - constant, friction.mu_s - constant},
+            {-other.at_rest() - constant, friction.at_rest() - constant}};
   }
   /// The process that is meant: on noise_levels if fixed, else on the full range.
   [[nodiscard]] Process meant() const { return process(noise_levels.value_or(full_levels())); }

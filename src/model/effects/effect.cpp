@@ -9,6 +9,7 @@
 
 #include "all.hpp"
 #include "force_file.hpp"
+#include "levels.hpp"
 #include "stickslip/base/text.hpp"
 #include "stickslip/model/effect.hpp"
 #include "stickslip/model/process.hpp"
@@ -166,6 +167,7 @@ model::Parameters parameters_of(const model::Scene& s) {
   add_values(frictions());
   add_values(drags());
   add("bias", s.bias);
+  if (s.spring) add(kStiffness, s.spring->stiffness());
   if (s.force) {
     add("force_file", s.force->file);
     if (s.force->scale != 1) add("force_scale", s.force->scale);
@@ -290,6 +292,18 @@ std::vector<Option> made() {
            .slider = Slider{.low = -0.9, .high = 0.9, .start = 0},
            .others = {"g", "force", "gravity", "slope"}}),
       Option::real(
+          kStiffness, "1/time^2", "", Range::positive(),
+          "stiffness K of a spring that pulls the body at p back by -K p, dp/dt = v, per unit "
+          "mass. "
+          "Under -noise ou without -delta, or with -delta 0, the noise is the continuous one",
+          "leave it out for a body without a spring",
+          {.symbol = "K",
+           .label = "stiffness of the spring",
+           .slider = Slider{.low = 0.1, .high = 25, .logarithmic = true},
+           .others = {"K", "k", "spring", "stiffness", "spring_constant", "restoring_force",
+                      "trap"},
+           .page = "docs/spring.md"}),
+      Option::real(
           "v_max", "velocity", "", Range::positive(),
           "truncation velocity: bodies that reach it wait there until the noise falls. Unless "
           "given, the largest velocity that matters at -accuracy",
@@ -334,10 +348,15 @@ class SceneReader {
     }
     check_friction();
     const bool made = noisy() && complete(noises());
+    const bool tied = given_.has(kStiffness);
     if (made || (noisy() && noises().in(scene_).levels == nullptr)) check_mean_force();
-    if (made) check_starts();
+    if (made && !tied) check_starts();
     if (given_.sound()) (void)complete(drags());  // which looks at the noise
-    if (scene_.noise.table && given_.sound()) check_returns();
+    if (given_.has(kStiffness)) {
+      read_spring(given_, scene_);
+    } else if (scene_.noise.table && given_.sound()) {
+      check_returns();
+    }
     return scene_;
   }
 
@@ -400,7 +419,8 @@ class SceneReader {
     const auto& forwards = scene_.friction;
     const auto backwards = forwards.mirrored();
     const double mean = scene_.noise.table ? scene_.noise.table->mean() : 0;
-    const double force = scene_.bias + mean, mu_d = force > 0 ? forwards.mu_d : backwards.mu_d;
+    const double driving = scene_.bias + mean, force = given_.has(kStiffness) ? 0 : driving,
+                 mu_d = force > 0 ? forwards.mu_d : backwards.mu_d;
     const bool made_later = drags().in(scene_).complete != nullptr;
     if (made_later || !scene_.drag.is_none() || std::abs(force) < mu_d) return;
     if (force == 0) {

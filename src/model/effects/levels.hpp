@@ -34,13 +34,16 @@ void make_continuous(Given& given, model::Scene& scene,
 /// Its nodes. Whether there are any.
 [[nodiscard]] bool complete_continuous(Given& given, model::Scene& scene);
 
+/// Ties the body of a scene that is otherwise complete to a spring.
+void read_spring(Given& given, model::Scene& scene);
+
 /// Throws std::invalid_argument unless so many states can be meant.
 void require_number_of_states(double count);
 
 // Options of Gaussian noise. Formulas may hold the correlation time whatever the noise.
 
 inline constexpr const char *kTau = "tau", *kDelta = "delta", *kLevels = "noise_levels",
-                            *kDeviation = "noise_deviation";
+                            *kDeviation = "noise_deviation", *kStiffness = "spring_stiffness";
 [[nodiscard]] Option tau_option();
 [[nodiscard]] Option delta_option();
 [[nodiscard]] Option deviation_option();

@@ -61,7 +61,10 @@ void read_ou(Given& given, model::Scene& scene) {
     given.refuse(kSteps, "gives the noise step, and so does -delta = " + given.text(kDelta),
                  "leave one of them out");
   }
-  scene.delta = steps ? scene.friction.mu_s / *steps : given.real(kDelta);
+  // With a spring results of levels are off by the first order of the step.
+  const bool tied = given.has(kStiffness) && !given.has(kDelta) && !given.has(kLevels);
+  scene.delta = tied ? 0 : given.real(kDelta);
+  if (steps) scene.delta = scene.friction.mu_s / *steps;
   scene.noise_levels = given.integer(kLevels);
   if (given.has(kDeviation)) scene.noise.deviation = given.real(kDeviation);
   const double tau = scene.tau, sigma = scene.noise.deviation.value_or(1 / std::sqrt(tau));

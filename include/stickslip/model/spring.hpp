@@ -1,0 +1,73 @@
+#pragma once
+/// A body on a spring.
+
+#include <map>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "stickslip/model/drag.hpp"
+#include "stickslip/model/noise_chain.hpp"
+
+namespace stickslip::model {
+
+/// dp/dt = v, dv/dt = f + b(v) - F(|v|) sign v with the force f = X - K (p - g/K) of the noise and
+/// the spring; a body sticks while |f| <= mu_s. A bias g shifts all positions by g/K and does
+/// nothing else. Nodes stand for pairs of a force and a position:
+///
+///   L = (f - F + b(v)) d/dv + C + v D,
+///
+/// C the noise at a fixed position, D the transport of the position by the motion. Of a noise on
+/// levels f = x_n - K p_j, C its jumps and D = d/dp by discontinuous elements, which end where a
+/// level starts or stops to hold a body. Of an Ornstein-Uhlenbeck process, of deviation sigma and
+/// correlation time tau,
+///
+///   C = (sigma^2/tau) d^2/df^2 - ((f + K p)/tau) d/df,   D = d/dp - K d/df,
+///
+/// by continuous polynomials along f as in GaussianNoise, with even weights. Positions end where
+/// the energy of a body driven by the noise has fallen off. Source: docs/spring.md. Immutable but
+/// for a store of projections; local.
+class Spring final : public Projector {
+ public:
+  /// An Ornstein-Uhlenbeck process.
+  struct Coloured {
+    double deviation, tau;
+  };
+  struct Body {
+    double stiffness;  ///< K > 0 [1/time^2]
+    double bias;       ///< g [force]
+    Friction friction;
+    Drag drag;
+  };
+  Spring(Body body, const Coloured& noise);
+  /// Throws UnfitTable if all levels hold the body at some positions, where it stays for ever.
+  Spring(Body body, const NoiseChain& chain);
+
+  [[nodiscard]] double stiffness() const { return body_.stiffness; }
+  [[nodiscard]] std::shared_ptr<const LevelTable> projected(const Thresholds& thresholds,
+                                                            int order) const override;
+  [[nodiscard]] bool fits(const Thresholds& thresholds, int order) const override;
+  [[nodiscard]] bool damped() const override { return false; }
+
+ private:
+  // Deviations in the stationary state of the body whose friction is replaced by the linear drag
+  // that takes as much power; and by how many of them positions and forces reach out.
+  struct Scales {
+    double position, velocity, force;
+    double drag;  // all of it, per velocity
+  };
+  [[nodiscard]] Scales find_scales() const;
+  [[nodiscard]] double reach(int order) const;
+  [[nodiscard]] Projection of_coloured(const Thresholds& thresholds, int order) const;
+  [[nodiscard]] Projection of_chain(const Thresholds& thresholds, int order) const;
+  [[nodiscard]] std::vector<double> ends_of_positions(const Thresholds& thresholds,
+                                                      int order) const;
+
+  Body body_;
+  Coloured noise_;
+  std::shared_ptr<const NoiseChain> chain_;
+  Scales scales_;
+  mutable std::map<std::pair<Thresholds, int>, std::shared_ptr<const LevelTable>> made_;
+};
+
+}  // namespace stickslip::model

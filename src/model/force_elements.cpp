@@ -1,0 +1,224 @@
+#include "force_elements.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+namespace stickslip::model {
+
+using Dense = linalg::Matrix<double>;
+
+double normal_weight(double z) { return std::exp(-z * z / 2) / std::sqrt(2 * std::numbers::pi); }
+
+double even_weight(double) { return 1; }
+
+namespace {
+
+struct LegendreRule {
+  std::vector<double> node, weight;  // on [-1, 1]
+
+  explicit LegendreRule(int size) {
+    std::vector<double> beside;
+    for (int n = 1; n < size; ++n) beside.push_back(n / std::sqrt(4.0 * n * n - 1));
+    linalg::TridiagonalEigen eigen(std::vector<double>(static_cast<std::size_t>(size), 0.0),
+                                   beside);
+    node = std::move(eigen.value);
+    for (int n = 0; n < size; ++n) weight.push_back(2 * std::pow(eigen.vectors(0, n), 2));
+  }
+};
+
+}  // namespace
+
+ForceElement::ForceElement(double low, double high, int p, Weight weight)
+    : z{low}, d(p + 1, p + 1) {
+  static const LegendreRule fine(80);
+  const double middle = (low + high) / 2, half = (high - low) / 2;
+  std::vector<double> points, weights, inner;
+  for (std::size_t n = 0; n < fine.node.size(); ++n) {
+    const double x = middle + half * fine.node[n];
+    points.push_back(x);
+    weights.push_back(half * fine.weight[n] * weight(x));
+    inner.push_back(weights.back() * (x - low) * (high - x));
+  }
+  // The inner nodes are those of Gauss for the weight that vanishes at both ends.
+  if (p > 1) {
+    const auto found = linalg::GaussRule(points, inner, p - 1).node;
+    z.insert(z.end(), found.begin(), found.end());
+  }
+  z.push_back(high);
+  find_derivatives();
+  // As sums of positive terms: l_k^2 has the degree 2 p, one too many, for inner nodes l_k^2 over
+  // a factor that vanishes at an end has not.
+  for (int k = 0; k <= p; ++k) {
+    const double end = k == 0 ? high : low;
+    double sum = 0;
+    for (std::size_t n = 0; n < points.size(); ++n) {
+      double square = weights[n] * (points[n] - end) / (z[k] - end);
+      if (k > 0 && k < p) square *= (high - points[n]) / (high - z[k]);
+      for (int l = 1; l < p; ++l) {
+        if (l != k) square *= std::pow((points[n] - z[l]) / (z[k] - z[l]), 2);
+      }
+      sum += square;
+    }
+    w.push_back(sum);
+  }
+}
+
+double ForceElement::cardinal(std::size_t k, double at) const {
+  double product = 1;
+  for (std::size_t l = 0; l < z.size(); ++l) {
+    if (l != k) product *= (at - z[l]) / (z[k] - z[l]);
+  }
+  return product;
+}
+
+void ForceElement::find_derivatives() {
+  const int size = static_cast<int>(z.size());
+  std::vector<double> scale(z.size(), 1.0);
+  for (int k = 0; k < size; ++k) {
+    for (int l = 0; l < size; ++l) {
+      if (l != k) scale[k] /= z[k] - z[l];
+    }
+  }
+  for (int k = 0; k < size; ++k) {
+    for (int l = 0; l < size; ++l) {
+      if (l == k) continue;
+      d(k, l) = scale[l] / scale[k] / (z[k] - z[l]);
+      d(k, k) -= d(k, l);
+    }
+  }
+}
+
+namespace {
+
+// What spans more than a factor of eight in the distance to a special point is split there, what is
+// long is cut into equal parts.
+void split_element(const std::vector<SpecialForce>& special, double low, double high,
+                   double longest, std::vector<double>& ends) {
+  constexpr double ratio = 6, most = 8, enough = 1.5;
+  const double length = high - low;
+  int graded = 0;
+  double at = 0;
+  for (const auto& s : special) {
+    if ((s.z != low && s.z != high) || length <= enough * s.size) continue;
+    ++graded;
+    at = s.z == low ? low + length / ratio : high - length / ratio;
+  }
+  if (graded > 1) at = (low + high) / 2;
+  for (const auto& s : special) {
+    if (graded > 0 || s.z == low || s.z == high) continue;
+    const double near = std::min(std::abs(low - s.z), std::abs(high - s.z)),
+                 far = std::max(std::abs(low - s.z), std::abs(high - s.z));
+    if (far <= most * near) continue;
+    graded = 1;
+    at = s.z + std::copysign(std::sqrt(near * far), low - s.z);
+  }
+  if (graded == 0 && length > longest) {
+    graded = 1;
+    at = low + length / std::ceil(length / longest);
+  }
+  if (graded == 0) return ends.push_back(high);
+  split_element(special, low, at, longest, ends);
+  split_element(special, at, high, longest, ends);
+}
+
+}  // namespace
+
+// Far from the balance points and the end points functions are smooth.
+ForceMesh force_mesh(const std::vector<SpecialForce>& special, double reach, double longest,
+                     int degree) {
+  std::vector<double> points{-reach};
+  for (const auto& s : special) {
+    if (std::abs(s.z) < reach) points.push_back(s.z);
+  }
+  points.push_back(reach);
+  std::sort(points.begin(), points.end());
+  ForceMesh mesh{{-reach}, {}};
+  for (std::size_t n = 1; n < points.size(); ++n) {
+    if (points[n] > points[n - 1])
+      split_element(special, points[n - 1], points[n], longest, mesh.ends);
+  }
+  // What is short beside a balance point needs few digits.
+  constexpr int least = 3;
+  const int count = static_cast<int>(mesh.ends.size()) - 1;
+  mesh.degrees.assign(static_cast<std::size_t>(count), degree);
+  for (const auto& s : special) {
+    if (!s.balance) continue;
+    const auto found = std::lower_bound(mesh.ends.begin(), mesh.ends.end(), s.z);
+    const int at = static_cast<int>(found - mesh.ends.begin());
+    for (int e = 0; e < count; ++e) {
+      const int apart = e >= at ? e - at : at - 1 - e;
+      mesh.degrees[e] = std::min(mesh.degrees[e], std::max(std::min(least, degree), least + apart));
+    }
+  }
+  return mesh;
+}
+
+AlongForce::AlongForce(const ForceMesh& mesh, const std::vector<double>& at, Weight weight)
+    : stiffness(nodes_of(mesh, at), nodes_of(mesh, at)), slope(stiffness.rows(), stiffness.rows()) {
+  std::vector<double> lengths;
+  for (std::size_t e = 0; e < mesh.degrees.size(); ++e) {
+    const bool cut = std::find(at.begin(), at.end(), mesh.ends[e]) != at.end();
+    if (cut) {
+      cuts.push_back(static_cast<int>(z.size()));
+      lengths.push_back(mesh.ends[e + 1] - mesh.ends[e]);
+    }
+    append({mesh.ends[e], mesh.ends[e + 1], mesh.degrees[e], weight}, cut || e == 0);
+  }
+  for (std::size_t n = 0; n < cuts.size(); ++n) tie(cuts[n], lengths[n]);
+}
+
+int AlongForce::nodes_of(const ForceMesh& mesh, const std::vector<double>& cuts) {
+  return std::accumulate(mesh.degrees.begin(), mesh.degrees.end(), 1) +
+         static_cast<int>(cuts.size());
+}
+
+const std::pair<int, ForceElement>& AlongForce::element_at(double force) const {
+  const auto found = std::ranges::find_if(
+      elements, [force](const auto& each) { return each.second.z.back() >= force; });
+  return found == elements.end() ? elements.back() : *found;
+}
+
+std::vector<double> AlongForce::forces(double scale, double upper_start, double lower_start) const {
+  std::vector<double> all;
+  for (double place : z) all.push_back(scale * place);
+  for (int node : cuts) {
+    const bool upper = upper_start / scale == z[node];
+    const double start = upper ? upper_start : lower_start, beyond = kApart * scale;
+    all[node - 1] = upper ? start : start - beyond;
+    all[node] = upper ? start + beyond : start;
+  }
+  return all;
+}
+
+// With a first node of its own, or that of the element before.
+void AlongForce::append(const ForceElement& element, bool own) {
+  const int p = element.d.rows() - 1, shared = own ? 0 : 1,
+            first = static_cast<int>(z.size()) - shared;
+  if (!own) w.back() += element.w[0];
+  z.insert(z.end(), element.z.begin() + shared, element.z.end());
+  w.insert(w.end(), element.w.begin() + shared, element.w.end());
+  for (int k = 0; k <= p; ++k) {
+    for (int l = 0; l <= p; ++l) {
+      slope(first + k, first + l) += element.w[k] * element.d(k, l);
+      for (int n = 0; n <= p; ++n) {
+        stiffness(first + l, first + n) += element.w[k] * element.d(k, l) * element.d(k, n);
+      }
+    }
+  }
+  elements.emplace_back(first, element);
+}
+
+// A jump costs that much more than a change within the element: results are off by its inverse,
+// and rounding grows with it.
+void AlongForce::tie(int node, double length) {
+  constexpr double penalty = 1e9;
+  const double rate = penalty / length * std::sqrt(w[node] * w[node - 1]);
+  for (const auto& [r, c] : {std::pair{node, node - 1}, {node - 1, node}}) {
+    stiffness(r, c) -= rate;
+    stiffness(r, r) += rate;
+  }
+}
+
+}  // namespace stickslip::model

@@ -1,0 +1,73 @@
+#pragma once
+/// Continuous piecewise polynomials along the force, for noise of continuous paths.
+
+#include <utility>
+#include <vector>
+
+#include "stickslip/linalg/dense.hpp"
+
+namespace stickslip::model {
+
+/// Weight of functions of the force: the normal density, or 1.
+using Weight = double (*)(double);
+[[nodiscard]] double normal_weight(double z);
+[[nodiscard]] double even_weight(double z);
+
+/// Nodes z and weights w of the Gauss-Lobatto rule on an element, exact for polynomials of degree 2
+/// p - 1, and the derivatives D_kl of its cardinal functions l at its nodes k.
+struct ForceElement {
+  std::vector<double> z, w;
+  linalg::Matrix<double> d;
+
+  ForceElement(double low, double high, int p, Weight weight);
+  /// The cardinal function of a node.
+  [[nodiscard]] double cardinal(std::size_t k, double at) const;
+
+ private:
+  void find_derivatives();
+};
+
+/// Ends of elements and their degrees.
+struct ForceMesh {
+  std::vector<double> ends;
+  std::vector<int> degrees;
+};
+
+/// A force at which functions are not smooth.
+struct SpecialForce {
+  double z;
+  double size;   ///< of the elements beside it
+  bool balance;  ///< whether elements beside it need few digits, as they are short
+};
+
+/// Elements on [-reach, reach] that end at the special points and grow from there, none longer than
+/// `longest`.
+[[nodiscard]] ForceMesh force_mesh(const std::vector<SpecialForce>& special, double reach,
+                                   double longest, int degree);
+
+/// Functions of the force on the nodes of a mesh: weights W, <Du, Dv> and <v, Du>. Nodes at cuts
+/// are doubled and tied together by a penalty, so that a function may jump there.
+struct AlongForce {
+  std::vector<double> z, w;
+  linalg::Matrix<double> stiffness, slope;
+  std::vector<int> cuts;                               ///< the upper of both nodes
+  std::vector<std::pair<int, ForceElement>> elements;  ///< with the first of their nodes
+
+  AlongForce(const ForceMesh& mesh, const std::vector<double>& at, Weight weight);
+  [[nodiscard]] static int nodes_of(const ForceMesh& mesh, const std::vector<double>& cuts);
+  /// The element that holds a force within the mesh.
+  [[nodiscard]] const std::pair<int, ForceElement>& element_at(double z) const;
+  /// Forces of nodes, with those on both sides of a cut told apart: the one that sticks at `start`
+  /// itself, the outer one beyond.
+  [[nodiscard]] std::vector<double> forces(double scale, double upper_start,
+                                           double lower_start) const;
+
+ private:
+  void append(const ForceElement& element, bool own);
+  void tie(int node, double length);
+};
+
+/// Of the nodes on both sides of a start [scale of forces].
+inline constexpr double kApart = 1e-9;
+
+}  // namespace stickslip::model

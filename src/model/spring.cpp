@@ -1,0 +1,392 @@
+#include "stickslip/model/spring.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "force_elements.hpp"
+#include "stickslip/base/text.hpp"
+
+namespace stickslip::model {
+namespace {
+
+using Dense = linalg::Matrix<double>;
+
+constexpr int kMostPairs = 3000;
+
+/// Functions of the position on discontinuous elements: nodes, and derivatives along a motion to
+/// either side, whose rows sum to zero. A body leaves an element at the end to which it moves.
+struct Positions {
+  std::vector<double> p;
+  Dense upwards, downwards;
+
+  Positions(const std::vector<double>& ends, int nodes) {
+    std::vector<double> beside;
+    for (int n = 1; n < nodes; ++n) beside.push_back(n / std::sqrt(4.0 * n * n - 1));
+    const linalg::TridiagonalEigen rule(std::vector<double>(static_cast<std::size_t>(nodes), 0.0),
+                                        beside);
+    for (int m = 0; m < nodes; ++m) {
+      node_.push_back((rule.value[m] - rule.value[nodes - 1 - m]) / 2);
+      weight_.push_back(std::pow(rule.vectors(0, m), 2) +
+                        std::pow(rule.vectors(0, nodes - 1 - m), 2));
+    }
+    std::vector<double> reversed;
+    for (std::size_t e = 0; e + 1 < ends.size(); ++e) {
+      for (double t : node_) p.push_back((ends[e] * (1 - t) + ends[e + 1] * (1 + t)) / 2);
+    }
+    for (std::size_t e = ends.size(); e-- > 0;) reversed.push_back(-ends[e]);
+    upwards = derivative(ends);
+    const Dense mirrored = derivative(reversed);
+    const int count = upwards.rows();
+    downwards = Dense(count, count);
+    for (int r = 0; r < count; ++r) {
+      for (int c = 0; c < count; ++c) downwards(r, c) = mirrored(count - 1 - r, count - 1 - c);
+    }
+  }
+
+ private:
+  // The cardinal functions of the nodes of [-1, 1] at a place.
+  [[nodiscard]] std::vector<double> at(double t) const {
+    std::vector<double> values;
+    for (std::size_t k = 0; k < node_.size(); ++k) {
+      double product = 1;
+      for (std::size_t l = 0; l < node_.size(); ++l) {
+        if (l != k) product *= (t - node_[l]) / (node_[k] - node_[l]);
+      }
+      values.push_back(product);
+    }
+    return values;
+  }
+
+  [[nodiscard]] Dense derivative(const std::vector<double>& ends) const {
+    const int q = static_cast<int>(node_.size()), elements = static_cast<int>(ends.size()) - 1;
+    const auto left = at(-1), right = at(1);
+    Dense inner(q, q), d(q * elements, q * elements);
+    for (int k = 0; k < q; ++k) {
+      for (int l = 0; l < q; ++l) {
+        if (l == k) continue;
+        double product = 1 / (node_[l] - node_[k]);
+        for (int m = 0; m < q; ++m) {
+          if (m != k && m != l) product *= (node_[k] - node_[m]) / (node_[l] - node_[m]);
+        }
+        inner(k, l) = product;
+        inner(k, k) -= product;
+      }
+    }
+    for (int e = 0; e < elements; ++e) {
+      const double half = (ends[e + 1] - ends[e]) / 2;
+      for (int k = 0; k < q; ++k) {
+        const double lift = e + 1 < elements ? right[k] / (half * weight_[k]) : 0;
+        for (int l = 0; l < q; ++l) {
+          d(e * q + k, e * q + l) = inner(k, l) / half - lift * right[l];
+          if (lift != 0) d(e * q + k, (e + 1) * q + l) = lift * left[l];
+        }
+      }
+    }
+    return d;
+  }
+
+  std::vector<double> node_, weight_;  // of [-1, 1]
+};
+
+void append_row(std::vector<Transition>& to, std::size_t from, std::size_t there, double rate) {
+  if (from != there && rate != 0) to.push_back({from, there, rate});
+}
+
+// Nodes at -z for those at z, exactly: what the mirror exchanges has the same bits.
+void symmetrise(AlongForce& x) {
+  const int count = static_cast<int>(x.z.size());
+  const Dense stiffness = x.stiffness, slope = x.slope;
+  const auto z = x.z, w = x.w;
+  for (int a = 0; a < count; ++a) {
+    const int there = count - 1 - a;
+    x.z[a] = (z[a] - z[there]) / 2;
+    x.w[a] = (w[a] + w[there]) / 2;
+    for (int b = 0; b < count; ++b) {
+      x.stiffness(a, b) = (stiffness(a, b) + stiffness(there, count - 1 - b)) / 2;
+      x.slope(a, b) = (slope(a, b) - slope(there, count - 1 - b)) / 2;
+    }
+  }
+}
+
+bool alike_both_ways(const Thresholds& t) {
+  return t.start[0] == -t.start[1] && t.balance[0] == -t.balance[1];
+}
+
+void normalise(std::vector<double>& p) {
+  const double total = std::accumulate(p.begin(), p.end(), 0.0);
+  for (double& value : p) value /= total;
+}
+
+/// Elements along the force.
+struct ForceLayout {
+  ForceMesh mesh;
+  std::vector<double> cuts;
+  double finest;
+};
+
+ForceLayout forces_of(const Thresholds& thresholds, double scale, double reach, int order) {
+  ForceLayout made{{}, {}, 0.4 * std::pow(0.6, order - 3)};
+  constexpr double at_starts = 0.8, longest = 2.5;
+  std::vector<SpecialForce> special;
+  double end = reach;
+  for (int side : {0, 1}) {
+    const double start = thresholds.start[side] / scale, balance = thresholds.balance[side] / scale;
+    const bool one = std::abs(start - balance) <= kApart;
+    special.push_back({start, one ? made.finest : std::max(made.finest, at_starts), one});
+    if (!one) special.push_back({balance, made.finest, true});
+    constexpr double beyond = 2.5;
+    end = std::max(end, std::abs(start) + beyond);
+    made.cuts.push_back(start);
+  }
+  made.mesh = force_mesh(special, end, longest, 3 + (order - 2) / 2);
+  return made;
+}
+
+// Of positions, by order.
+int nodes_of_element(int order) { return order + 1; }
+
+}  // namespace
+
+Spring::Spring(Body body, const Coloured& noise) : body_(std::move(body)), noise_(noise) {
+  scales_ = find_scales();
+}
+
+Spring::Spring(Body body, const NoiseChain& chain)
+    : body_(std::move(body)),
+      noise_{chain.standard_deviation(), chain.correlation_time()},
+      chain_(std::make_shared<const NoiseChain>(chain)) {
+  const double width = chain.level(chain.highest()) - chain.level(chain.lowest()),
+               held = body_.friction.mu_s + body_.friction.mirrored().mu_s;
+  if (width <= held) {
+    throw UnfitTable(
+        0, fmt::format("all levels of the noise, which are {:g} apart from the lowest to the "
+                       "highest, hold the body at positions in the middle: it comes to rest there "
+                       "for ever, P_stick = 1 and V = 0",
+                       width));
+  }
+  scales_ = find_scales();
+}
+
+// The variances of p, v and dv/dt + c v under exponentially correlated noise, in closed form: those
+// of a linear equation of third order driven by white noise.
+Spring::Scales Spring::find_scales() const {
+  const double a = 1 / noise_.tau, k = body_.stiffness,
+               white = 2 * a * noise_.deviation * noise_.deviation;
+  const auto taken = [&](double v) {
+    const auto other = body_.friction.mirrored();
+    const double friction = (body_.friction(v) + other(v)) / 2 * std::sqrt(2 / std::numbers::pi),
+                 drag = (body_.drag(-v) - body_.drag(v)) / 2;
+    return (friction + drag) / v;
+  };
+  Scales s{0, noise_.deviation / std::sqrt(k), 0, 0};
+  constexpr int steps = 300;
+  for (int n = 0; n < steps; ++n) {
+    s.drag = n == 0 ? taken(s.velocity) : 0.7 * s.drag + 0.3 * taken(s.velocity);
+    const double c = s.drag, d0 = k * a, d1 = k + a * c, d2 = a + c, gap = d1 * d2 - d0;
+    s.position = std::sqrt(white * d2 / (2 * d0 * gap));
+    s.velocity = std::sqrt(white / (2 * gap));
+    s.force = std::sqrt(white * (d1 + c * c) / (2 * gap));
+  }
+  return s;
+}
+
+// The amplitude of an oscillation, driven as hard as in the stationary state, loses what drag and
+// friction take: its density falls like exp(-(c r^2/2 + 4 F r/(pi s))/c_eq) at r deviations s.
+double Spring::reach(int order) const {
+  const double s = scales_.velocity, fall = 6 + 1.8 * order,
+               friction = std::min(body_.friction(s), body_.friction.mirrored()(s)),
+               square =
+                   std::max(0.0, scales_.drag - friction * std::sqrt(2 / std::numbers::pi) / s) /
+                   (2 * scales_.drag),
+               linear = 4 * friction / (std::numbers::pi * s * scales_.drag);
+  if (square < 1e-9) return fall / linear;
+  return 2 * fall / (linear + std::sqrt(linear * linear + 4 * square * fall));
+}
+
+std::vector<double> Spring::ends_of_positions(const Thresholds& thresholds, int order) const {
+  const double reach_of_energy = reach(order) * scales_.position;
+  if (!chain_) {
+    const int elements = 2 + order / 2;
+    std::vector<double> ends;
+    for (int e = 0; e <= elements; ++e) {
+      ends.push_back(reach_of_energy * (2.0 * e - elements) / elements);
+    }
+    return ends;
+  }
+  const double k = body_.stiffness, low = chain_->level(chain_->lowest()),
+               high = chain_->level(chain_->highest()), middle = (low + high) / 2;
+  double most = reach_of_energy + std::abs(chain_->mean() - middle) / k;
+  if (body_.drag.is_linear()) {
+    // A body that swings as far as levels drive it which take turns at the worst times.
+    const double c = body_.drag.linear, turn = k - c * c / 4,
+                 left = turn > 0 ? std::exp(-std::numbers::pi * c / (2 * std::sqrt(turn))) : 0;
+    if (left < 1) most = std::min(most, (high - low) / 2 * (1 + left) / (1 - left) / k);
+  }
+  const double longest = 2 * scales_.position / order, apart = 1e-6 * most;
+  std::vector<double> places{middle / k - most, middle / k, middle / k + most};
+  for (int n = chain_->lowest(); n <= chain_->highest(); ++n) {
+    for (const auto* pair : {&thresholds.start, &thresholds.balance}) {
+      for (double threshold : *pair) places.push_back((chain_->level(n) - threshold) / k);
+    }
+  }
+  std::ranges::sort(places);
+  std::vector<double> ends;
+  for (double place : places) {
+    if (std::abs(place - middle / k) > most * (1 + 1e-9)) continue;
+    if (!ends.empty() && place - ends.back() < apart) continue;
+    if (!ends.empty()) {
+      const double from = ends.back();
+      const int parts = static_cast<int>(std::ceil((place - from) / longest));
+      for (int part = 1; part < parts; ++part) ends.push_back(from + (place - from) * part / parts);
+    }
+    ends.push_back(place);
+  }
+  for (std::size_t n = 0; chain_->even() && 2 * n < ends.size(); ++n) {
+    const double half = (ends[ends.size() - 1 - n] - ends[n]) / 2;
+    ends[n] = -half;
+    ends[ends.size() - 1 - n] = half;
+  }
+  return ends;
+}
+
+Projection Spring::of_coloured(const Thresholds& thresholds, int order) const {
+  const double scale = scales_.force, k = body_.stiffness;
+  const ForceLayout grid = forces_of(thresholds, scale, reach(order), order);
+  AlongForce x(grid.mesh, grid.cuts, even_weight);
+  const Positions y(ends_of_positions(thresholds, order), nodes_of_element(order));
+  Projection made;
+  made.even = made.reversed = alike_both_ways(thresholds);
+  if (made.even) symmetrise(x);
+  const auto force = x.forces(scale, thresholds.start[1], thresholds.start[0]);
+  const std::size_t along = force.size(), across = y.p.size();
+  const double diffusion = noise_.deviation * noise_.deviation / noise_.tau / (scale * scale);
+  for (std::size_t a = 0; a < along; ++a) {
+    const bool first = a == 0, last = a + 1 == along;
+    for (std::size_t j = 0; j < across; ++j) {
+      const std::size_t from = a * across + j;
+      const double noise = force[a] + k * y.p[j];
+      double drift = -noise / noise_.tau;
+      if (first) drift = std::max(drift, 0.0);
+      if (last) drift = std::min(drift, 0.0);
+      for (std::size_t b = 0; b < along; ++b) {
+        const int r = static_cast<int>(a), c = static_cast<int>(b);
+        if (x.stiffness(r, c) == 0 && x.slope(r, c) == 0) continue;
+        const double slope = x.slope(r, c) / (x.w[a] * scale);
+        append_row(made.transitions, from, b * across + j,
+                   drift * slope - diffusion * x.stiffness(r, c) / x.w[a]);
+        append_row(made.upwards, from, b * across + j, first ? 0 : -k * slope);
+        append_row(made.downwards, from, b * across + j, last ? 0 : k * slope);
+      }
+      for (std::size_t i = 0; i < across; ++i) {
+        const int r = static_cast<int>(j), c = static_cast<int>(i);
+        append_row(made.upwards, from, a * across + i, y.upwards(r, c));
+        append_row(made.downwards, from, a * across + i, y.downwards(r, c));
+      }
+      made.x.push_back(force[a]);
+      made.position.push_back(y.p[j] + body_.bias / k);
+      made.noise.push_back(noise);
+      const double there = y.p[j] / scales_.position;
+      made.probability.push_back(std::exp(-(x.z[a] * x.z[a] + there * there) / 2) + 1e-9);
+    }
+  }
+  normalise(made.probability);
+  made.deviation = noise_.deviation;
+  made.intensity = made.peak_intensity = noise_.deviation * noise_.deviation * noise_.tau;
+  made.step = grid.finest * scale;
+  made.rate = 2 * diffusion / (grid.finest * grid.finest);
+  constexpr int half = 100;
+  const double step = 6 * noise_.deviation / half;
+  for (int i = -half; i <= half; ++i) {
+    made.shown.x.push_back(step * i);
+    auto& shares = made.shown.of.emplace_back();
+    for (std::size_t j = 0; j < across; ++j) {
+      const double z = (step * i - k * y.p[j]) / scale;
+      if (z < x.z.front() || z > x.z.back()) continue;
+      const auto& [first, element] = x.element_at(z);
+      for (std::size_t n = 0; n < element.z.size(); ++n) {
+        const std::size_t node = static_cast<std::size_t>(first) + n;
+        shares.push_back({static_cast<int>(node * across + j),
+                          step * element.cardinal(n, z) / (x.w[node] * scale)});
+      }
+    }
+  }
+  return made;
+}
+
+Projection Spring::of_chain(const Thresholds& thresholds, int order) const {
+  const double k = body_.stiffness;
+  const Positions y(ends_of_positions(thresholds, order), nodes_of_element(order));
+  const std::size_t levels = static_cast<std::size_t>(chain_->count()), across = y.p.size();
+  const auto p = stationary_distribution(*chain_);
+  struct Node {
+    double x;
+    std::size_t level, j;
+  };
+  std::vector<Node> nodes;
+  for (std::size_t n = 0; n < levels; ++n) {
+    const double x = chain_->level(chain_->lowest() + static_cast<int>(n));
+    for (std::size_t j = 0; j < across; ++j) nodes.push_back({x - k * y.p[j], n, j});
+  }
+  std::ranges::stable_sort(nodes, [](const Node& a, const Node& b) {
+    return std::tie(a.x, a.level) < std::tie(b.x, b.level);
+  });
+  std::vector<std::size_t> place(nodes.size());
+  for (std::size_t m = 0; m < nodes.size(); ++m) place[nodes[m].level * across + nodes[m].j] = m;
+  Projection made;
+  made.continuous = false;
+  made.even = alike_both_ways(thresholds) && chain_->even();
+  made.reversed = made.even && chain_->even_in_order();
+  for (std::size_t m = 0; m < nodes.size(); ++m) {
+    const auto& [x, level, j] = nodes[m];
+    const int here = chain_->lowest() + static_cast<int>(level);
+    chain_->for_each_jump(here, [&, j = j, m = m](int to, double rate) {
+      const auto there = static_cast<std::size_t>(to - chain_->lowest());
+      append_row(made.transitions, m, place[there * across + j], rate);
+    });
+    for (std::size_t i = 0; i < across; ++i) {
+      const int r = static_cast<int>(j), c = static_cast<int>(i);
+      const std::size_t to = place[level * across + i];
+      append_row(made.upwards, m, to, y.upwards(r, c));
+      append_row(made.downwards, m, to, y.downwards(r, c));
+    }
+    made.x.push_back(x);
+    made.position.push_back(y.p[j] + body_.bias / k);
+    made.noise.push_back(chain_->level(here));
+    made.probability.push_back(p[level]);
+  }
+  normalise(made.probability);
+  made.deviation = chain_->standard_deviation();
+  made.intensity = chain_->intensity();
+  made.peak_intensity = chain_->tail_intensity();
+  made.step = chain_->step();
+  made.rate = chain_->rate();
+  return made;
+}
+
+bool Spring::fits(const Thresholds& thresholds, int order) const {
+  const std::size_t across = (ends_of_positions(thresholds, order).size() - 1) *
+                             static_cast<std::size_t>(nodes_of_element(order));
+  std::size_t along = chain_ ? static_cast<std::size_t>(chain_->count()) : 0;
+  if (!chain_) {
+    const ForceLayout grid = forces_of(thresholds, scales_.force, reach(order), order);
+    along = static_cast<std::size_t>(AlongForce::nodes_of(grid.mesh, grid.cuts));
+  }
+  return along * across <= kMostPairs;
+}
+
+std::shared_ptr<const LevelTable> Spring::projected(const Thresholds& thresholds, int order) const {
+  auto& known = made_[{thresholds, order}];
+  if (known) return known;
+  if (!fits(thresholds, order)) {
+    throw UnfitTable(0,
+                     fmt::format("takes more than {} pairs of a force and a position", kMostPairs));
+  }
+  const Projection made = chain_ ? of_chain(thresholds, order) : of_coloured(thresholds, order);
+  return known = std::make_shared<const LevelTable>(LevelTable::of(made));
+}
+
+}  // namespace stickslip::model
