@@ -18,12 +18,14 @@ using Dense = linalg::Matrix<double>;
 constexpr int kMostPairs = 3000;
 
 /// Functions of the position on discontinuous elements: nodes, and derivatives along a motion to
-/// either side, whose rows sum to zero. A body leaves an element at the end to which it moves.
+/// either side, whose rows sum to zero. A body leaves an element at the end to which it moves. The
+/// last one has no end, which is exact for polynomials; or, `bounded`, bodies that come there,
+/// which none should, are put anywhere in it, so that what happens there stays bounded.
 struct Positions {
   std::vector<double> p;
   Dense upwards, downwards;
 
-  Positions(const std::vector<double>& ends, int nodes) {
+  Positions(const std::vector<double>& ends, int nodes, bool bounded) : bounded_(bounded) {
     std::vector<double> beside;
     for (int n = 1; n < nodes; ++n) beside.push_back(n / std::sqrt(4.0 * n * n - 1));
     const linalg::TridiagonalEigen rule(std::vector<double>(static_cast<std::size_t>(nodes), 0.0),
@@ -79,16 +81,20 @@ struct Positions {
     for (int e = 0; e < elements; ++e) {
       const double half = (ends[e + 1] - ends[e]) / 2;
       for (int k = 0; k < q; ++k) {
-        const double lift = e + 1 < elements ? right[k] / (half * weight_[k]) : 0;
+        const bool last = e + 1 == elements;
+        const double lift = last && !bounded_ ? 0 : right[k] / (half * weight_[k]);
         for (int l = 0; l < q; ++l) {
-          d(e * q + k, e * q + l) = inner(k, l) / half - lift * right[l];
-          if (lift != 0) d(e * q + k, (e + 1) * q + l) = lift * left[l];
+          d(e * q + k, e * q + l) += inner(k, l) / half - lift * right[l];
+          if (lift == 0) continue;
+          const int there = last ? e : e + 1;
+          d(e * q + k, there * q + l) += lift * (last ? weight_[l] / 2 : left[l]);
         }
       }
     }
     return d;
   }
 
+  bool bounded_;
   std::vector<double> node_, weight_;  // of [-1, 1]
 };
 
@@ -210,11 +216,10 @@ double Spring::reach(int order) const {
 std::vector<double> Spring::ends_of_positions(const Thresholds& thresholds, int order) const {
   const double reach_of_energy = reach(order) * scales_.position;
   if (!chain_) {
-    const int elements = 2 + order / 2;
+    constexpr double longest = 9;  // deviations
+    const int half = static_cast<int>(std::ceil(reach(order) / longest));
     std::vector<double> ends;
-    for (int e = 0; e <= elements; ++e) {
-      ends.push_back(reach_of_energy * (2.0 * e - elements) / elements);
-    }
+    for (int e = -half; e <= half; ++e) ends.push_back(reach_of_energy * e / half);
     return ends;
   }
   const double k = body_.stiffness, low = chain_->level(chain_->lowest()),
@@ -257,7 +262,7 @@ Projection Spring::of_coloured(const Thresholds& thresholds, int order) const {
   const double scale = scales_.force, k = body_.stiffness;
   const ForceLayout grid = forces_of(thresholds, scale, reach(order), order);
   AlongForce x(grid.mesh, grid.cuts, even_weight);
-  const Positions y(ends_of_positions(thresholds, order), nodes_of_element(order));
+  const Positions y(ends_of_positions(thresholds, order), nodes_of_element(order), false);
   Projection made;
   made.even = made.reversed = alike_both_ways(thresholds);
   if (made.even) symmetrise(x);
@@ -319,7 +324,7 @@ Projection Spring::of_coloured(const Thresholds& thresholds, int order) const {
 
 Projection Spring::of_chain(const Thresholds& thresholds, int order) const {
   const double k = body_.stiffness;
-  const Positions y(ends_of_positions(thresholds, order), nodes_of_element(order));
+  const Positions y(ends_of_positions(thresholds, order), nodes_of_element(order), true);
   const std::size_t levels = static_cast<std::size_t>(chain_->count()), across = y.p.size();
   const auto p = stationary_distribution(*chain_);
   struct Node {

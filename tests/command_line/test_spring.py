@@ -1,0 +1,84 @@
+"""A body on a spring: values of other methods, what must hold whatever the numbers, and what is refused."""
+
+import math
+
+from running import Case
+
+SPRING = ("-spring_stiffness", "1", "-mu_d", "0.5")
+TELEGRAPH = ("-noise", "telegraph", "-telegraph_amplitude", "1.5", "-telegraph_rate", "0.5")
+THREE = "x,rate_up,rate_down\n-1.5,1,0\n0,0.5,0.5\n1.5,0,1\n"
+MOMENTS = ("-quantities", "sticking,moments", "-accuracy", "1e-2")
+
+
+class Spring(Case):
+    def expect(self, options, right):
+        """Values within their errors, to the digits that are known, and errors as asked for."""
+        results = self.summary(*options)["results"]
+        for key, (value, known) in right.items():
+            found = results[key]
+            self.assertLessEqual(abs(found["value"] - value), found["error"] + known, (options, key))
+            self.assertLess(found["error"], 1e-2 * abs(value), (options, key))
+        return results
+
+    # By a program that solves all states of (f, p, v) at once with sparse factors, on meshes of its own.
+    def test_coloured_noise(self):
+        results = self.expect((*SPRING, *MOMENTS), {
+            "P_stick": (0.238315, 1e-6), "mean_stick": (0.476246, 1e-6), "mean_slide": (1.52215, 1e-5),
+            "E_V2": (0.1171895, 1e-7), "E_absV": (0.222021, 1e-6), "E_P2": (0.373925, 1e-6), "E_XP": (0.2282, 1e-6)})
+        self.assertEqual(results["E_P"]["value"], 0)
+        balance = 0.5 * results["E_absV"]["value"] + results["E_V2"]["value"]  # the power of friction and drag
+        self.assertAlmostEqual(results["E_XV"]["value"] / balance, 1, delta=1e-6)
+        self.assertAlmostEqual(results["E_XV"]["value"] / results["E_XP"]["value"], 1, delta=1e-4)
+        self.expect(("-spring_stiffness", "0.1", *SPRING[2:], *MOMENTS),
+                    {"P_stick": (0.230268, 1e-6), "E_P2": (5.27643, 1e-5)})
+
+    # Event-driven simulation of 4e8 jumps agrees to 1e-4; at no position do both levels hold the body.
+    def test_telegraph_noise(self):
+        results = self.expect((*SPRING, *TELEGRAPH, *MOMENTS), {
+            "P_stick": (0.249885, 3e-6), "mean_slide": (6.0037, 1e-4), "E_V2": (0.337178, 1e-6),
+            "E_P2": (0.752678, 1e-6), "E_XP": (0.551169, 1e-6)})
+        self.assertAlmostEqual(results["mean_stick"]["value"], 2, delta=1e-10)
+
+    def test_three_levels(self):
+        (self.folder / "three.csv").write_text(THREE)
+        self.expect(("-spring_stiffness", "1", "-mu_d", "0.5", "-drag_coefficient", "0.5", "-noise", "file",
+                     "-noise_file", "three.csv", *MOMENTS),
+                    {"P_stick": (0.350535, 2e-6), "mean_stick": (1.81273, 1e-5), "E_V2": (0.2829587, 1e-7),
+                     "E_P2": (0.651836, 1e-6)})
+
+    # Without friction everything is Gaussian; what little of it there is counts to first order.
+    def test_next_to_no_friction(self):
+        once, twice = (self.summary("-spring_stiffness", "1", "-mu_s", mu, "-mu_d", mu, "-quantities", "moments",
+                                    "-accuracy", "1e-2")["results"] for mu in ("1e-3", "2e-3"))
+        for key, value in {"E_P2": 2 / 3, "E_V2": 1 / 3, "E_XP": 1 / 3, "E_XV": 1 / 3,
+                           "E_absV": math.sqrt(2 / math.pi / 3)}.items():
+            found = 2 * once[key]["value"] - twice[key]["value"]
+            self.assertLess(abs(found - value), 3 * once[key]["error"] + 1e-5, key)
+
+    def test_bias_is_a_shift(self):
+        options = (*SPRING, *TELEGRAPH, *MOMENTS, "-degree", "4")
+        without = self.summary(*options, status=3)["results"]
+        results = self.summary(*options, "-bias", "0.7", status=3)["results"]
+        for key in ("P_stick", "mean_slide", "E_V2", "E_XV"):
+            self.assertAlmostEqual(results[key]["value"] / without[key]["value"], 1, delta=1e-10)
+        self.assertEqual(results["E_V"]["value"], 0)
+        self.assertAlmostEqual(results["E_P2"]["value"], without["E_P2"]["value"] + 0.7**2, delta=1e-9)
+
+    def test_friction_by_direction_shifts_the_body(self):
+        options = (*SPRING, *TELEGRAPH, "-mu_s_minus", "1.2", "-mu_d_minus", "0.6", *MOMENTS)
+        results = self.summary(*options)["results"]
+        power = results["E_XV"]["value"]
+        self.assertGreater(results["E_P"]["value"], 5 * results["E_P"]["error"])
+        self.assertAlmostEqual(power / (results["E_V2"]["value"] + 0.55 * results["E_absV"]["value"]), 1, delta=1e-6)
+
+    def test_what_is_refused(self):
+        self.refuse(*SPRING, "-quantities", "displacement", "-time", "1", "-start", "stationary",
+                    message=("asks for displacement, and a spring keeps the body in one place",))
+        self.refuse(*SPRING, "-quantities", "expectation", "-observable", "v^2", "-time", "1", "-start", "rest",
+                    message=("-start = rest: does not say at which position",))
+        self.refuse(*SPRING, "-route", "monte_carlo", message=("-route = monte_carlo: needs a noise of levels alone",))
+        self.refuse(*SPRING, "-noise", "narrow_band", "-band_frequency", "1", "-band_width", "1",
+                    message=("-spring_stiffness = 1: goes with noise of levels, or with one",))
+        self.refuse("-spring_stiffness", "0", message=("-spring_stiffness = 0", "(0, inf)"))
+        self.refuse(*SPRING, "-noise", "telegraph", "-telegraph_amplitude", "0.9", "-telegraph_rate", "1",
+                    message=("all levels of the noise", "P_stick = 1"))
