@@ -44,7 +44,8 @@ TEST_CASE("spring: force, noise and position belong together, and motion changes
       CHECK(chain.noise(i) == -mirrored.noise(-i));
       const double step = carried(chain, i, [&](int n) { return chain.position(n); });
       largest = std::max(largest, std::abs(step - 1));
-      const double same = carried(mirrored, i, [&](int n) { return mirrored.level(n); });
+      const int there = i - chain.lowest() + mirrored.lowest();
+      const double same = carried(mirrored, there, [&](int n) { return mirrored.level(n); });
       apart = std::max(apart,
                        std::abs(same - carried(chain, i, [&](int n) { return chain.level(n); })));
     }
