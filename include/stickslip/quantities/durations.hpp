@@ -20,9 +20,11 @@ struct DurationDistribution {
   int pairs = 0;                        ///< of vectors of the reduced model, 0 if there is none
 };
 
-/// Sticking phases, from the hitting distribution at their onset by the static chain alone: exp(Q
-/// t) as a sum of positive terms (uniformisation), so that every value keeps its relative accuracy.
-/// O(Lambda t_max k).
+/// Sticking phases, from the hitting distribution at their onset by exp(Q t) of the static chain.
+/// Where the noise jumps to neighbours: inverse Laplace transforms, with resolvents that are found
+/// without subtraction, by as many equal steps as keep the relative accuracy of small values; O(k)
+/// a step. Other chains and nodes of continuous noise: squares of exp(Q h), O(k^3 log(Lambda t)).
+/// Few jumps one by one.
 [[nodiscard]] DurationDistribution stick_distribution(const model::Process& process,
                                                       const std::vector<Uncertain>& entry,
                                                       const std::vector<double>& time);

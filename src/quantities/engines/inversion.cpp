@@ -89,6 +89,19 @@ std::vector<Complex> TransferFunction::from_left(Complex z) const {
   return x;
 }
 
+TalbotContour::TalbotContour(int points) {
+  constexpr double a = 0.5017, b = 0.6407, c = 0.6122, d = 0.2645;
+  for (int n = points / 2; n < points; ++n) {
+    const double theta = std::numbers::pi * (2.0 * n + 1 - points) / points;
+    const double sine = std::sin(b * theta), cotangent = std::cos(b * theta) / sine;
+    const Complex point(a * theta * cotangent - c, d * theta);
+    const Complex slope(a * cotangent - a * b * theta / (sine * sine), d);
+    z.push_back(static_cast<double>(points) * point);
+    // exp(z) dz/(2 pi i), doubled for the lower half
+    weight.push_back(2.0 * std::exp(z.back()) * slope * Complex(0, -1));
+  }
+}
+
 namespace {
 
 constexpr double kPi = std::numbers::pi;

@@ -324,24 +324,6 @@ namespace {
 constexpr int kWide = 34, kNarrow = 24;
 constexpr double kDoubt = 3;
 
-/// Points and weights of sum Re w F(z) for t = 1, upper half of Talbot's contour.
-struct Contour {
-  std::vector<std::complex<double>> z, weight;
-
-  explicit Contour(int points) {
-    constexpr double a = 0.5017, b = 0.6407, c = 0.6122, d = 0.2645;
-    for (int n = points / 2; n < points; ++n) {
-      const double theta = std::numbers::pi * (2.0 * n + 1 - points) / points;
-      const double sine = std::sin(b * theta), cotangent = std::cos(b * theta) / sine;
-      const std::complex<double> point(a * theta * cotangent - c, d * theta);
-      const std::complex<double> slope(a * cotangent - a * b * theta / (sine * sine), d);
-      z.push_back(static_cast<double>(points) * point);
-      // exp(z) dz/(2 pi i), doubled for the lower half
-      weight.push_back(2.0 * std::exp(z.back()) * slope * std::complex<double>(0, -1));
-    }
-  }
-};
-
 // An error dH of the transfer function is one of its inverse at the time t,
 //
 //   |df| <= (e/pi) int |dH((1 + i y)/t)| dy/t,  y >= 0,
@@ -380,7 +362,7 @@ void add_points(const std::vector<Fold>& folds, const std::vector<double>& time,
 
 std::vector<std::vector<Uncertain>>
 evaluate(const Reduced& reduced, const std::vector<double>& time, const std::vector<int>& folds) {
-  static const std::array<Contour, 2> contours{Contour(kWide), Contour(kNarrow)};
+  static const std::array<TalbotContour, 2> contours{TalbotContour(kWide), TalbotContour(kNarrow)};
   const TransferFunction transfer(reduced.m, reduced.gamma, reduced.beta);
   std::vector<std::vector<Uncertain>> values(folds.size());
   for (double t : time) {

@@ -42,6 +42,16 @@ class TransferFunction {
   std::vector<std::complex<double>> left_, right_;  // left Q, Q^H right
 };
 
+/// Points z and weights w, on the upper half of Talbot's contour with the parameters of Weideman
+/// (SIAM J. Numer. Anal. 44, 2006): f(t) = sum Re w F(z/t)/t from its Laplace transform F, whose
+/// singularities are near the negative axis. exp(-x) is right to 3e-14 for all x >= 0 at 28 to 32
+/// points of both halves; rounding grows by exp(0.17 points).
+struct TalbotContour {
+  std::vector<std::complex<double>> z, weight;
+
+  explicit TalbotContour(int points);
+};
+
 /// f with phi(k) = int f(x) exp(i k x) dx, of a mass that need not be 1 and with a singularity at
 /// x = 0 where f is a series in |x|^(1/2) from |x|^(-1/2) on, another one on either side.
 ///
