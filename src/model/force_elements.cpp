@@ -125,9 +125,10 @@ void split_element(const std::vector<SpecialForce>& special, double low, double 
 
 }  // namespace
 
-// Far from the balance points and the end points functions are smooth.
+// Far from the balance points and the end points functions are smooth. What has just come to rest
+// beside a start is about to leave: times at rest need digits there.
 ForceMesh force_mesh(const std::vector<SpecialForce>& special, double reach, double longest,
-                     int degree) {
+                     int degree, int at_rest) {
   std::vector<double> points{-reach};
   for (const auto& s : special) {
     if (std::abs(s.z) < reach) points.push_back(s.z);
@@ -150,6 +151,11 @@ ForceMesh force_mesh(const std::vector<SpecialForce>& special, double reach, dou
     for (int e = 0; e < count; ++e) {
       const int apart = e >= at ? e - at : at - 1 - e;
       mesh.degrees[e] = std::min(mesh.degrees[e], std::max(std::min(least, degree), least + apart));
+    }
+  }
+  for (const auto& s : special) {
+    for (int e = 0; e < count && !s.balance; ++e) {
+      if (s.z == mesh.ends[s.upper ? e + 1 : e]) mesh.degrees[e] = at_rest;
     }
   }
   return mesh;

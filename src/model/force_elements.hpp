@@ -38,12 +38,13 @@ struct SpecialForce {
   double z;
   double size;   ///< of the elements beside it
   bool balance;  ///< whether elements beside it need few digits, as they are short
+  bool upper;    ///< the side to which bodies move there
 };
 
 /// Elements on [-reach, reach] that end at the special points and grow from there, none longer than
-/// `longest`.
+/// `longest`; of the degree `at_rest` inside of starts.
 [[nodiscard]] ForceMesh force_mesh(const std::vector<SpecialForce>& special, double reach,
-                                   double longest, int degree);
+                                   double longest, int degree, int at_rest);
 
 /// Functions of the force on the nodes of a mesh: weights W, <Du, Dv> and <v, Du>. Nodes at cuts
 /// are doubled and tied together by a penalty, so that a function may jump there.

@@ -330,12 +330,13 @@ Layout layout_of(const Dense& a, double deviation, const Thresholds& thresholds,
     const double start = thresholds.start[side] / deviation,
                  balance = thresholds.balance[side] / deviation;
     const bool one = std::abs(start - balance) <= kApart;
-    special.push_back({start, one ? made.finest : std::max(made.finest, at_starts), one});
-    if (!one) special.push_back({balance, made.finest, true});
+    special.push_back(
+        {start, one ? made.finest : std::max(made.finest, at_starts), one, side == 1});
+    if (!one) special.push_back({balance, made.finest, true, side == 1});
     if (std::abs(start) < reach) made.cuts.push_back(start);
   }
   constexpr double longest = 3;
-  made.mesh = force_mesh(special, reach, longest, along);
+  made.mesh = force_mesh(special, reach, longest, along, std::max(order, along));
   made.modes = modes_below(factors, across);
   return made;
 }

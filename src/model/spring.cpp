@@ -142,13 +142,15 @@ ForceLayout forces_of(const Thresholds& thresholds, double scale, double reach, 
   for (int side : {0, 1}) {
     const double start = thresholds.start[side] / scale, balance = thresholds.balance[side] / scale;
     const bool one = std::abs(start - balance) <= kApart;
-    special.push_back({start, one ? made.finest : std::max(made.finest, at_starts), one});
-    if (!one) special.push_back({balance, made.finest, true});
+    special.push_back(
+        {start, one ? made.finest : std::max(made.finest, at_starts), one, side == 1});
+    if (!one) special.push_back({balance, made.finest, true, side == 1});
     constexpr double beyond = 2.5;
     end = std::max(end, std::abs(start) + beyond);
     made.cuts.push_back(start);
   }
-  made.mesh = force_mesh(special, end, longest, 3 + (order - 2) / 2);
+  const int degree = 3 + (order - 2) / 2;
+  made.mesh = force_mesh(special, end, longest, degree, degree);
   return made;
 }
 

@@ -39,8 +39,7 @@ inline constexpr Entry kDurationDensity{
     .others = "f_slide, cdf_slide, f_stick, cdf_stick",
     .rows = kDurationDensityRows,
     .degrees_besides = 3,
-    .of_phases = true,
-    .of_levels = true};
+    .of_phases = true};
 
 // The quantity phase_durations: probability densities and distribution functions of the sliding
 // and sticking durations, without those of excursions.
@@ -89,8 +88,7 @@ inline constexpr Entry kPhaseDurations{
     .options = "time",
     .rows = kPhaseDurationsRows,
     .degrees_besides = 3,
-    .of_phases = true,
-    .of_levels = true};
+    .of_phases = true};
 
 // The quantity F_stick: Laplace transform of the sticking duration alone, without a solve for each
 // lambda.
