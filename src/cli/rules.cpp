@@ -6,6 +6,7 @@
 #include "reading.hpp"
 #include "stickslip/base/text.hpp"
 #include "stickslip/case/displacement_rows.hpp"
+#include "stickslip/case/duration_rows.hpp"
 #include "stickslip/case/force_rows.hpp"
 #include "stickslip/case/spectrum_rows.hpp"
 #include "stickslip/cli/output.hpp"
@@ -137,6 +138,12 @@ class Rules {
     report("start", starts && state, fmt::format("is one level, and {} has none", option),
            r_.scene.spring ? "add -start stationary" : "add -start rest or -start stationary");
     of_springs(starts && q_.start.kind == model::Start::Kind::rest);
+    const bool durations =
+        q_.wants(cases::kPhaseDurations.quantity) || q_.wants(Quantity::duration_density);
+    report("time", r_.scene.noise.gaussian && durations && std::ranges::count(q_.time, 0.0) > 0,
+           "includes 0, where the density of sticking durations is infinite: noise of continuous "
+           "paths lets bodies that stop near mu_s go on at once",
+           "take times from above 0, for example 0.01:10:10:log");
     if (!r_.scene.meant().starts_at_balance()) return;
     const std::string at_once =
         "mu_d = mu_s, where noise of continuous paths brings bodies to rest "

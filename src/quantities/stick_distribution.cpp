@@ -15,6 +15,11 @@ using Complex = std::complex<double>;
 using States = std::vector<double>;  // by static level, and last what has left them
 
 constexpr double kRounding = 1e-15;
+// What sums over numbers of jumps leave out, of all that rests.
+constexpr double kLeast = 1e-30;
+// Nodes tied together where bodies start, see GaussianNoise::projected(), are left more slowly by
+// that share.
+constexpr double kTied = 3e-7;
 constexpr int kFewJumps = 64;  // that weights of numbers of jumps do not underflow
 
 /// A distribution at rest with the errors that it had at first, and rounding since.
@@ -37,10 +42,10 @@ class StickingFlow {
     for (std::size_t from = 0; from < count; ++from) {
       double size = 0;
       process.noise.for_each_jump(lowest + static_cast<int>(from), [&](int level, double rate) {
-        const bool stays = lowest <= level && level <= process.highest_static();
-        const std::size_t to = stays ? static_cast<std::size_t>(level - lowest) : count;
+        const bool inside = lowest <= level && level <= process.highest_static();
+        const std::size_t to = inside ? static_cast<std::size_t>(level - lowest) : count;
         jumps_.push_back({from, to, rate});
-        if (stays) (to > from ? up_ : down_)[from] += rate;
+        if (inside) (to > from ? up_ : down_)[from] += rate;
         leaves[from] += rate;
         size += std::abs(rate);
         positive_ = positive_ && rate >= 0;
@@ -85,6 +90,8 @@ class StickingFlow {
         *states = step(std::move(*states), jumps / steps);
     }
     now.relative += kRounding / 10 * (8 + jumps);
+    now.of_density = 10 * kLeast * rate_;
+    now.of_ended += 10 * kLeast;
     return now;
   }
 
@@ -94,7 +101,7 @@ class StickingFlow {
     States sum(chain.size(), 0.0);
     for (int n = 0;; ++n) {
       for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += weight * chain[i];
-      if (n > jumps && weight < 1e-18) return sum;
+      if (n > jumps && weight < kLeast) return sum;
       States next(chain.size(), 0.0);
       for (const auto& [from, to, rate] : jumps_) next[to] += chain[from] * (rate / rate_);
       for (std::size_t i = 0; i < next.size(); ++i) next[i] += chain[i] * keeps_[i];
@@ -186,14 +193,14 @@ class StickingFlow {
   // For chains of any jumps: powers of exp(Q h), twice as high each time.
   [[nodiscard]] std::vector<Resting> by_squares(const std::vector<double>& time,
                                                 const Resting& start) const {
-    constexpr int halvings = 10;  // of 1/rate: five terms of a series are enough
+    constexpr int halvings = 10;  // of 1/rate: a few terms of a series are enough
     const double unit = std::exp2(-std::ceil(std::log2(rate_)) - halvings);
     std::vector<Resting> all;
     for (double t : time) all.push_back(by_jumps(start, std::fmod(t, unit)));
     auto power = short_exponential(unit);
     for (double units = 1; units <= time.back() / unit; units *= 2) {
       for (std::size_t n = 0; n < all.size(); ++n) {
-        all[n].relative += kRounding;
+        all[n].relative += 4 * kRounding;
         if (std::fmod(std::floor(time[n] / unit / units), 2) == 0) continue;
         for (auto* states : {&all[n].value, &all[n].error}) *states = *states * power;
       }
@@ -213,7 +220,7 @@ class StickingFlow {
     }
     const auto one = linalg::Matrix<double>::identity(size);
     auto sum = one;
-    for (int n = 4; n >= 1; --n) sum = 1.0 / n * (q * sum) + one;
+    for (int n = 8; n >= 1; --n) sum = 1.0 / n * (q * sum) + one;
     make_stochastic(sum);
     return sum;
   }
@@ -261,9 +268,13 @@ DurationDistribution stick_distribution(const model::Process& process,
   const auto found = flow.at(rising, std::move(start));
   result.density.resize(time.size());
   result.distribution.resize(time.size());
+  const double tied = process.noise.has_levels() ? 0 : kTied;
   for (std::size_t n = 0; n < found.size(); ++n) {
-    const auto& [value, error, relative, of_density, of_ended] = found[n];
-    const double density = flow.leaving(value), ended = value.back();
+    const auto& [value, error, rounding, of_density, of_ended] = found[n];
+    const double density = flow.leaving(value), ended = value.back(),
+                 rests = std::accumulate(value.begin(), value.end() - 1, 0.0),
+                 late = rests > 0 ? tied * rising[n] * std::abs(density / rests) : 0,
+                 relative = rounding + late;
     result.density[order[n]] = {density,
                                 flow.leaving(error) + relative * std::abs(density) + of_density};
     result.distribution[order[n]] = {ended, error.back() + relative * std::abs(ended) + of_ended};

@@ -313,6 +313,9 @@ void leave_out_missing_side(const model::Process& process, Results& results) {
 }
 
 void leave_out_uncountable(const model::Process& process, Results& results) {
+  if (!process.noise.has_levels()) {
+    std::erase_if(results, [](const Result& result) { return result.key == cases::kFStick0.key; });
+  }
   if (!process.starts_at_balance()) return;
   static const std::set<std::string> durations{"mean_stick", "mean_slide", "mean_excursion"};
   std::erase_if(results, [](const Result& result) { return durations.contains(result.key); });

@@ -1,6 +1,7 @@
 """Noises of the command line: what is refused, what has no effect, and what the summary holds."""
 
 import json
+import math
 import unittest
 
 import h5py
@@ -75,6 +76,23 @@ class Noises(Case):
     GROUND = ("-noise", "filtered", "-ground_frequency", "15.6", "-ground_damping", "0.6", "-noise_deviation", "2",
               "-mu_s", "1.5", "-mu_d", "0.75")
     BAND = ("-noise", "narrow_band", "-band_frequency", "1", "-band_width", "0.5", "-mu_d", "0.25")
+
+    def test_durations_of_gaussian_noise(self):
+        # (1 - F)' = -f, integrated by Simpson's rule in log t, and the fall of long rests at the rate 2 (test_stick_distribution).
+        times = [0.5 * 2 ** (n / 4) for n in range(9)]
+        found = self.summary("-noise", "ou", "-delta", "0", "-mu_d", "0.5", "-quantities", "phase_durations",
+                             "-time", ",".join(map(repr, times + [4, 6])), "-accuracy", "1e-3")["results"]
+        for phase in ("slide", "stick"):
+            f, cdf = found[f"f_{phase}"]["value"], found[f"cdf_{phase}"]["value"]
+            weights = [1, 4, 2, 4, 2, 4, 2, 4, 1]
+            rise = math.log(2) / 12 * sum(w * t * value for w, t, value in zip(weights, times, f))
+            self.assertAlmostEqual(rise, cdf[8] - cdf[0], delta=1e-4)
+        stick = found["f_stick"]
+        self.assertAlmostEqual(stick["value"][10] / stick["value"][9], math.exp(-4), delta=1e-5)
+        self.refuse("-noise", "ou", "-delta", "0", "-mu_d", "0.5", "-quantities", "phase_durations", "-time", "0:1:3",
+                    message=("-time", "includes 0", "infinite"))
+        at_balance = ("-noise", "ou", "-delta", "0", "-quantities", "phase_durations", "-time", "1")
+        self.refuse(*at_balance, message=("mu_d = mu_s", "infinitely often"))
 
     def test_gaussian_noises_by_name(self):
         ground = self.summary(*self.GROUND, "-accuracy", "1e-3")

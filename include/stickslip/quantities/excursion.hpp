@@ -93,7 +93,8 @@ void append_noise_sensitivity(const model::Process& process, Results& results);
 /// Leaves out the results that are about excursions from s+ or s- if the noise has no such level.
 void leave_out_missing_side(const model::Process& process, Results& results);
 
-/// Leaves out mean durations where Process::starts_at_balance().
+/// Leaves out mean durations where Process::starts_at_balance(), and f_stick_0 where the noise has
+/// no levels: it is infinite.
 void leave_out_uncountable(const model::Process& process, Results& results);
 
 /// The stationary distribution of X as the excursion sees it, summed over the grid, from the lowest
