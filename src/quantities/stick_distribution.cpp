@@ -85,13 +85,15 @@ class StickingFlow {
   [[nodiscard]] Resting by_jumps(Resting now, double time) const {
     const double jumps = rate_ * time;
     const int steps = std::max(1, static_cast<int>(std::ceil(jumps / kFewJumps)));
+    double size = 0;
+    for (double value : now.value) size += std::abs(value);
+    for (double& error : now.error) error += 10 * kLeast * (size - now.value.back());
     for (int n = 0; n < steps; ++n) {
       for (auto* states : {&now.value, &now.error})
         *states = step(std::move(*states), jumps / steps);
     }
     now.relative += kRounding / 10 * (8 + jumps);
-    now.of_density = 10 * kLeast * rate_;
-    now.of_ended += 10 * kLeast;
+    now.of_density = 0;
     return now;
   }
 
