@@ -11,6 +11,7 @@
 #include "stickslip/case/spectrum_rows.hpp"
 #include "stickslip/cli/output.hpp"
 #include "stickslip/model/effect.hpp"
+#include "stickslip/simulation/walk.hpp"
 
 namespace stickslip::cli {
 namespace {
@@ -123,13 +124,21 @@ class Rules {
       way = fmt::format("give -delta, such as {:.3g}, for levels", r_.scene.delta);
     }
     const std::string why = "needs a noise of levels alone, which " + option + " has not";
-    report("route", r_.method.route != Route::excursion || r_.method.scheme != Scheme::hp, why,
-           "leave it out, or " + way);
+    const bool solved = r_.method.route == Route::excursion && r_.method.scheme == Scheme::hp,
+               simulated = method_.simulates && !r_.scene.spring;
+    report("route", !solved && !simulated, why, "leave it out, or " + way);
     report("study", study_, why, "leave it out, or " + way);
-    const auto of_levels = wanted([](const auto& entry) { return entry.of_levels; });
+    report("compare", r_.scene.spring && settings_.has("compare"), why, "leave it out, or " + way);
+    report("accuracy", simulated && q_.accuracy_given && q_.accuracy < 2 * simulation::kStepError,
+           fmt::format("= {:g} is not reached by simulated paths of {}, whose steps leave {:g}",
+                       q_.accuracy, option, simulation::kStepError),
+           fmt::format("take {:g} or more", 2 * simulation::kStepError));
+    const auto of_levels = wanted([simulated](const auto& entry) {
+      return simulated ? !entry.by_excursion : entry.of_levels;
+    });
     report("quantities", !of_levels.empty(),
-           fmt::format("asks for {}, which are found for noises of levels alone, and {} has none",
-                       enumerate(of_levels, "and"), option),
+           fmt::format("asks for {}, which are {} for noises of levels alone, and {} has none",
+                       enumerate(of_levels, "and"), simulated ? "simulated" : "found", option),
            "leave that out, or " + way);
     const bool starts = std::ranges::any_of(cases::entries(), [this](const auto* entry) {
       return q_.wants(entry->quantity) && entry->takes("start");

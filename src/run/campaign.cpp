@@ -248,7 +248,7 @@ Identity identity(const Case& given) {
     found.emplace_back("-" + name, std::visit(text, value));
   }
   found.emplace_back("-noise_levels", s.noise_levels ? text(*s.noise_levels) : "");
-  if (const auto& table = s.noise.table) {
+  if (const auto& table = s.noise.table; table && !s.noise.gaussian) {
     std::string levels;
     for (int i = table->lowest(); i <= table->highest(); ++i) {
       levels += fmt::format("{}", table->at(i).x);
@@ -325,23 +325,28 @@ class Campaign {
   // as asked.
   void require_time() const {
     const auto& wanted = tally_.wanted();
-    const auto chain = generator::StaticChain::of(process_);
-    const auto sticking = chain.integral(std::vector<double>(chain.size(), 1.0));
-    const double sides = process_.symmetric() ? 1 : 2,
-                 stationary = wanted.stationary_paths ? sides : 0,
-                 sticking_phases = sides + stationary + (wanted.speeds.empty() ? 0 : 1),
-                 walks = (wanted.start ? 1 : 0) + stationary,
-                 longest = wanted.time.empty() ? 0 : std::ranges::max(wanted.time);
+    const double longest = wanted.time.empty() ? 0 : std::ranges::max(wanted.time),
+                 jumps = process_.noise.gaussian ? simulation::steps_of_sample(process_)
+                                           : jumps_of_sample(longest);
     constexpr double jump = 15e-9, month = 30 * 86400.0;
-    const double jumps =
-        process_.noise.rate() *
-        (sticking_phases * std::min(sticking.front(), sticking.back()) + walks * longest);
     const double seconds = given_.method.excursions * jumps * jump / linalg::ranks(comm_);
     if (seconds < month) return;
     throw BadInput(fmt::format(
         "-excursions = {:g}: a sample has {:.1e} jumps of the noise and more, so that this "
         "would take {:.0e} days; take fewer excursions{}, or -route excursion",
         given_.method.excursions, jumps, seconds / 86400, longest > 0 ? ", a shorter -time" : ""));
+  }
+
+  [[nodiscard]] double jumps_of_sample(double longest) const {
+    const auto& wanted = tally_.wanted();
+    const auto chain = generator::StaticChain::of(process_);
+    const auto sticking = chain.integral(std::vector<double>(chain.size(), 1.0));
+    const double sides = process_.symmetric() ? 1 : 2,
+                 stationary = wanted.stationary_paths ? sides : 0,
+                 sticking_phases = sides + stationary + (wanted.speeds.empty() ? 0 : 1),
+                 walks = (wanted.start ? 1 : 0) + stationary;
+    return process_.noise.rate() *
+           (sticking_phases * std::min(sticking.front(), sticking.back()) + walks * longest);
   }
 
   void load() {
@@ -418,6 +423,7 @@ class Campaign {
     Results all;
     std::ranges::transform(tally_.estimates(), std::back_inserter(all), result_of);
     quantities::leave_out_missing_side(process_, all);
+    quantities::leave_out_uncountable(process_, all);
     return all;
   }
 

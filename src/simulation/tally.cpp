@@ -169,7 +169,7 @@ const Histogram& Tally::histogram(std::vector<double> edges, const Number& of) {
 }
 
 Sampled Tally::sampled() const {
-  if (!process_.noise.neighbours_only()) return Sampled::cycles;
+  if (process_.noise.gaussian || !process_.noise.neighbours_only()) return Sampled::cycles;
   return process_.symmetric() ? Sampled::one_side : Sampled::sides;
 }
 
@@ -225,6 +225,13 @@ void Tally::add(const FollowedPath& path) {
 Estimates Tally::estimates() const {
   Estimates all;
   for (const auto& report : reports_) std::ranges::move(report(*this), std::back_inserter(all));
+  for (auto& estimated : all) {
+    for (auto& [value, low, high] : estimated.values) {
+      const double by_steps = process_.noise.gaussian ? kStepError * std::abs(value) : 0;
+      low -= by_steps;
+      high += by_steps;
+    }
+  }
   return all;
 }
 
@@ -276,6 +283,7 @@ namespace {
 
 // By side; of cycles, which are the shorter the more often their start occurs.
 std::vector<int> starts_of(const model::Process& process, Sampled sampled) {
+  if (process.noise.gaussian) return {kPathBegins};
   if (!process.sticks()) return {};
   if (sampled != Sampled::cycles) return {process.exit_level(true), process.exit_level(false)};
   const auto flows = process.flows_to_starts();
@@ -298,9 +306,9 @@ Sampler::Sampler(const cases::Question& question, const model::Process& process)
       starts_(starts_of(process, sampled_)),
       wanted_(tally_.wanted()),
       source_(make_source(process, wanted_)),
-      walk_(make_walk(process, wanted_.travel)),
       order_(wanted_.time.size()),
       states_(wanted_.time.size()) {
+  if (wanted_.start || wanted_.stationary_paths) walk_ = make_walk(process, wanted_.travel);
   std::iota(order_.begin(), order_.end(), std::size_t{0});
   std::sort(order_.begin(), order_.end(),
             [&](std::size_t a, std::size_t b) { return wanted_.time[a] < wanted_.time[b]; });

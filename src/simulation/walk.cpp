@@ -406,6 +406,7 @@ std::size_t Wanted::observe(const model::Observable& f) {
 }
 
 std::unique_ptr<ExcursionSource> make_source(const model::Process& process, const Wanted& wanted) {
+  if (process.noise.gaussian) return make_gaussian_source(process, wanted);
   if (process.drag.is_linear()) return std::make_unique<Source<LinearFlow>>(process, wanted);
   return std::make_unique<Source<GeneralFlow>>(process, wanted);
 }

@@ -39,7 +39,8 @@ inline constexpr Entry kDurationDensity{
     .others = "f_slide, cdf_slide, f_stick, cdf_stick",
     .rows = kDurationDensityRows,
     .degrees_besides = 3,
-    .of_phases = true};
+    .of_phases = true,
+    .by_excursion = true};
 
 // The quantity phase_durations: probability densities and distribution functions of the sliding
 // and sticking durations, without those of excursions.
@@ -88,7 +89,8 @@ inline constexpr Entry kPhaseDurations{
     .options = "time",
     .rows = kPhaseDurationsRows,
     .degrees_besides = 3,
-    .of_phases = true};
+    .of_phases = true,
+    .by_excursion = true};
 
 // The quantity F_stick: Laplace transform of the sticking duration alone, without a solve for each
 // lambda.
@@ -100,7 +102,8 @@ inline constexpr Entry kStickTransform{
     .routes = {Route::excursion, Route::fluid_queue, Route::monte_carlo},
     .options = "lambda",
     .others = "F_stick",
-    .of_phases = true};
+    .of_phases = true,
+    .by_excursion = true};
 
 // The quantity laplace: Laplace transforms and variances of the durations.
 
@@ -172,6 +175,7 @@ inline constexpr Entry kLaplace{
     .options = "lambda",
     .others = "mean_slide, mean_stick, mean_excursion, f_stick_0",
     .rows = kLaplaceRows,
-    .of_phases = true};
+    .of_phases = true,
+    .by_excursion = true};
 
 }  // namespace stickslip::cases

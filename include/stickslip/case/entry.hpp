@@ -183,6 +183,7 @@ struct Entry {
   bool of_phases = false;  ///< about sticking and sliding phases: nothing where a body never sticks
   bool of_levels = false;  ///< by levels of the noise, or known for these alone
   bool of_travel = false;  ///< of a displacement that grows with time
+  bool by_excursion = false;  ///< simulated excursion by excursion, whatever comes before and after
   bool without_system = false;  ///< from the model parameters, or from what others give, alone
   bool of_one_run = false;      ///< a field or a path, which has no place in a sweep
   bool without_limit = false;   ///< not a number that white noise has, which -study tau follows

@@ -65,6 +65,7 @@ inline constexpr Entry kSlip{.quantity = Quantity::slip,
                              .routes = {Route::excursion, Route::monte_carlo},
                              .options = "distance, inverse_distance",
                              .rows = kSlipRows,
-                             .of_phases = true};
+                             .of_phases = true,
+                             .by_excursion = true};
 
 }  // namespace stickslip::cases

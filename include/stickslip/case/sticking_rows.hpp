@@ -62,7 +62,8 @@ inline constexpr Entry kSticking{.quantity = Quantity::sticking,
                                             Route::null_vector, Route::fluid_queue,
                                             Route::monte_carlo},
                                  .rows = kStickingRows,
-                                 .of_phases = true};
+                                 .of_phases = true,
+                                 .by_excursion = true};
 
 // The quantity moments: moments of the velocity in the stationary distribution.
 
@@ -129,7 +130,8 @@ inline constexpr Entry kMoments{.quantity = Quantity::moments,
                                 .title = "moments of the velocity in the stationary distribution",
                                 .routes = {Route::excursion, Route::lambda, Route::null_vector,
                                            Route::fluid_queue, Route::monte_carlo},
-                                .rows = kMomentsRows};
+                                .rows = kMomentsRows,
+                                .by_excursion = true};
 
 // The quantity averages: stationary averages of functions of the state, overall and by phase.
 
@@ -181,7 +183,8 @@ inline constexpr Entry kAverages{
     .title = "stationary averages of functions of the state, overall and by phase",
     .routes = {Route::excursion, Route::lambda, Route::null_vector, Route::monte_carlo},
     .options = "observable",
-    .rows = kAveragesRows};
+    .rows = kAveragesRows,
+    .by_excursion = true};
 
 // The quantity noise_law: stationary distribution of the noise.
 
@@ -210,7 +213,8 @@ inline constexpr Entry kNoiseLaw{.quantity = Quantity::noise_law,
                                  .title = "stationary distribution of the noise",
                                  .routes = {Route::excursion, Route::lambda, Route::null_vector,
                                             Route::fluid_queue, Route::monte_carlo},
-                                 .rows = kNoiseLawRows};
+                                 .rows = kNoiseLawRows,
+                                 .by_excursion = true};
 
 // The quantity entry_law: hitting distribution at the onset of sticking.
 

@@ -252,6 +252,8 @@ class UnfitTable : public std::invalid_argument {
   std::size_t row_;
 };
 
+class GaussianNoise;
+
 /// A chain on levels x_i, lowest() <= i <= highest(), x rising. Its members are all that the
 /// discretisations and the simulation know of the noise. Two kinds:
 ///
@@ -273,6 +275,8 @@ struct NoiseChain {
   int levels = 1;                                ///< N, number of levels on each side of 0
   std::optional<double> deviation = {};          ///< sigma [force]
   std::shared_ptr<const LevelTable> table = {};  ///< what counts instead, if there is one
+  /// The noise of continuous paths of which the table is a projection, if it is one.
+  std::shared_ptr<const GaussianNoise> gaussian = {};
 
   [[nodiscard]] int lowest() const { return table ? table->lowest() : -levels; }
   [[nodiscard]] int highest() const { return table ? table->highest() : levels; }

@@ -266,6 +266,7 @@ struct Scene {
                 with_weakening(drag, friction),
                 spring ? 0 : bias};
     if (projector() != nullptr) {
+      all.noise.gaussian = noise.gaussian;
       all.noise.table = projector()->projected(thresholds(), std::max(levels, 2));
     } else if (noise.table && levels < full_levels()) {
       all.noise.table = std::make_shared<const LevelTable>(noise.table->within(

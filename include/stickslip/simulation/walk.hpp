@@ -4,6 +4,7 @@
 
 #include <Random123/philox.h>
 #include <boost/random/exponential_distribution.hpp>
+#include <boost/random/normal_distribution.hpp>
 
 #include <algorithm>
 #include <array>
@@ -56,6 +57,8 @@ class RandomStream {
   double uniform() { return static_cast<double>((*this)() >> 11) * 0x1p-53; }
   /// Exponentially distributed with mean 1, by Boost.Random's ziggurat.
   double exponential() { return exponential_(*this); }
+  /// Normally distributed with mean 0 and variance 1, by the same.
+  double normal() { return normal_(*this); }
 
  private:
   // Many blocks at a time: they do not depend on one another, and processors overlap them.
@@ -76,6 +79,7 @@ class RandomStream {
   std::uint32_t half_ = 0;
   bool kept_ = false;
   boost::random::exponential_distribution<double> exponential_;
+  boost::random::normal_distribution<double> normal_;
 };
 
 // Jumps of a noise to any levels.
@@ -246,8 +250,21 @@ class ExcursionSource {
   virtual void draw_from(int level, RandomStream& random, Excursion& excursion) = 0;
 };
 
+/// Where noise of continuous paths has no levels, its excursions follow one another in samples:
+/// this one is drawn from where the path of a sample begins, and another one is next within a
+/// sample.
+constexpr int kPathBegins = 0;
+
 /// Closed forms where b is linear, a series otherwise. Local.
 [[nodiscard]] std::unique_ptr<ExcursionSource> make_source(const model::Process& process,
                                                            const Wanted& wanted);
+/// Of noise of continuous paths, without what Wanted has of passages, transforms and discounts.
+[[nodiscard]] std::unique_ptr<ExcursionSource> make_gaussian_source(const model::Process& process,
+                                                                    const Wanted& wanted);
+/// What its steps leave of error, relative to each result: intervals are so much wider. Three times
+/// what was seen, in P(|X| <= mu_s).
+constexpr double kStepError = 1e-3;
+/// Steps of such a path that a sample takes at least.
+[[nodiscard]] double steps_of_sample(const model::Process& process);
 
 }  // namespace stickslip::simulation

@@ -1,0 +1,445 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+#include <cstddef>
+#include <functional>
+#include <numeric>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "stickslip/base/text.hpp"
+#include "stickslip/linalg/dense.hpp"
+#include "stickslip/simulation/flow.hpp"
+#include "stickslip/simulation/walk.hpp"
+
+namespace stickslip::simulation {
+namespace {
+
+using Dense = linalg::Matrix<double>;
+
+Dense transposed(const Dense& m) {
+  Dense t(m.columns(), m.rows());
+  for (int r = 0; r < m.rows(); ++r) {
+    for (int c = 0; c < m.columns(); ++c) t(c, r) = m(r, c);
+  }
+  return t;
+}
+
+/// X = deviation Z_1 of dZ = -A Z dt + b dW, driven by one Wiener process. With p = E[Z Z^T] the
+/// covariance of X is that of the noise where p e_1 = e_1, and A p + p A^T = b b^T. With A = ((a,
+/// r), (q, s)) that leaves a Riccati equation for the other rows and columns P of p,
+///
+///   s P + P s^T = (P r^T + q) (P r^T + q)^T/(2 a),
+///
+/// solved by the eigenvectors of its Hamiltonian matrix. A + A^T need not be positive.
+struct Driven {
+  Dense a, p;
+  std::vector<double> b;
+
+  explicit Driven(const Dense& matrix) : a(matrix), p(Dense::identity(a.rows())) {
+    const int n = a.rows() - 1;
+    const double twice = 2 * a(0, 0);
+    if (n > 0) solve(n, twice);
+    for (int i = 0; i <= n; ++i) {
+      double sum = a(i, 0);
+      for (int k = 0; k <= n; ++k) sum += p(i, k) * a(0, k);
+      b.push_back(sum / std::sqrt(twice));
+    }
+  }
+
+ private:
+  void solve(int n, double twice) {
+    using Complex = std::complex<double>;
+    linalg::Matrix<Complex> h(2 * n, 2 * n);
+    for (int i = 0; i < n; ++i) {
+      for (int k = 0; k < n; ++k) {
+        const double f = a(i + 1, k + 1) - a(i + 1, 0) * a(0, k + 1) / twice;
+        h(k, i) = f;
+        h(n + i, n + k) = -f;
+        h(i, n + k) = -a(0, i + 1) * a(0, k + 1) / twice;
+        h(n + i, k) = a(i + 1, 0) * a(k + 1, 0) / twice;
+      }
+    }
+    const linalg::Eigenvectors eigen(h);
+    std::vector<int> order(static_cast<std::size_t>(2 * n));
+    std::iota(order.begin(), order.end(), 0);
+    std::ranges::stable_sort(order, std::greater<>(), [&](int k) { return eigen.value[k].real(); });
+    linalg::Matrix<Complex> upper(n, n), lower(n, n);  // P = lower upper^-1, transposed
+    for (int k = 0; k < n; ++k) {
+      for (int i = 0; i < n; ++i) {
+        upper(k, i) = eigen.right(i, order[k]);
+        lower(k, i) = eigen.right(n + i, order[k]);
+      }
+    }
+    const auto found = linalg::LuFactors<Complex>(upper).solved(lower);
+    for (int i = 0; i < n; ++i) {
+      for (int k = 0; k < n; ++k) p(i + 1, k + 1) = (found(i, k) + found(k, i)).real() / 2;
+    }
+  }
+};
+
+/// L with L L^T = m for a covariance; what rounding leaves of a variance counts as none.
+Dense root_of(const Dense& m) {
+  constexpr double rounding = 1e-13;
+  Dense l(m.rows(), m.rows());
+  for (int c = 0; c < m.rows(); ++c) {
+    const auto rest = [&](int r) {
+      double sum = m(r, c);
+      for (int k = 0; k < c; ++k) sum -= l(r, k) * l(c, k);
+      return sum;
+    };
+    const double variance = rest(c);
+    if (variance <= rounding * m(c, c)) continue;
+    for (int r = c; r < m.rows(); ++r) l(r, c) = rest(r) / std::sqrt(variance);
+  }
+  return l;
+}
+
+/// (Z, int X dt) over a time, given Z at its start: `rows` has for each of them the d factors of Z,
+/// and those of as many normal numbers as there are rows up to this one.
+struct Step {
+  double time, root;  ///< and its square root
+  std::vector<double> rows;
+};
+
+/// Steps of the times shortest 2^k. The covariance of the shortest one is a series, in which
+/// nothing cancels; of two in a row it is a sum.
+std::vector<Step> steps_of(const Driven& noise, double deviation, double shortest, int count) {
+  const int n = noise.a.rows() + 1;
+  Dense m(n, n), term(n, n), covariance(n, n);
+  for (int i = 0; i + 1 < n; ++i) {
+    for (int k = 0; k + 1 < n; ++k) {
+      m(i, k) = -noise.a(i, k);
+      term(i, k) = noise.b[i] * noise.b[k] * shortest;
+    }
+  }
+  m(n - 1, 0) = deviation;
+  const auto transpose = transposed(m);
+  for (int k = 2; k < 12; ++k) {
+    covariance += term;
+    term = shortest / k * (m * term + term * transpose);
+  }
+  std::vector<Step> steps;
+  Dense moved = linalg::exponential(m, shortest);
+  for (double time = shortest; count-- > 0; time *= 2) {
+    auto& rows = steps.emplace_back(Step{time, std::sqrt(time), {}}).rows;
+    const Dense spread = root_of(covariance);
+    for (int r = 0; r < n; ++r) {
+      for (int c = 0; c + 1 < n; ++c) rows.push_back(moved(r, c));
+      for (int c = 0; c <= r; ++c) rows.push_back(spread(r, c));
+    }
+    covariance += moved * covariance * transposed(moved);
+    moved = moved * moved;
+  }
+  return steps;
+}
+
+/// When a Brownian bridge of this variance in all first comes to a level, given that it does, from
+/// `before` away from it to `after` away on either side, as a share of its time: xi/(1 + xi), with
+/// xi of the inverse normal distribution (by Michael, Schucany and Haas, The American Statistician
+/// 30, 1976).
+double arrival(RandomStream& random, double before, double after, double variance) {
+  const double mean = before / std::max(after, 1e-9 * std::sqrt(variance)),
+               normal = random.normal(),
+               w = mean * normal * normal * variance / (2 * before * before),
+               least = mean / (1 + w + std::sqrt(w * (2 + w))),
+               xi = random.uniform() * (mean + least) <= mean ? least : mean * mean / least;
+  return xi / (1 + xi);
+}
+
+// How paths are cut into steps and samples.
+
+constexpr double kLongest = 0.05;  // step, in the time of the fastest change
+constexpr int kHalvings = 14,      // of it, to the shortest one
+    kAtRest = kHalvings - 6, kAtStops = kHalvings - 4;
+constexpr double kDeviations = 4;  // by which the noise has to miss a change of sign within a step
+constexpr double kRoom = 2;        // and the threshold in a step at rest that need not be short
+constexpr double kClear = 8;       // times what it has to miss is the force in which bodies stop
+constexpr double kMemories = 8;    // that a path forgets before a sample, which lasts as long
+
+struct Scales {
+  double fastest;  // rate [1/time]
+  double memory;   // time [time]
+};
+
+Scales scales_of(const model::Process& process) {
+  const auto& noise = *process.noise.gaussian;
+  double slowest = kInfinity;
+  for (const auto& term : noise.terms()) slowest = std::min(slowest, term.decay);
+  const auto& [drag, friction] = std::tie(process.drag, process.friction);
+  const double speed = drag.terminal_velocity(3 * noise.deviation() + std::abs(process.bias)),
+               slope = std::isfinite(speed) ? drag.steepest(speed) : 0,
+               loss = std::isfinite(speed) ? -drag(speed) / speed : 0;
+  // Under dry friction mu alone white noise of strength 2 D forgets its velocity at mu^2/(4 D).
+  const double least = std::min(friction.mu_d, friction.mirrored().mu_d),
+               held = std::max(least - std::abs(process.bias), 0.0),
+               strength = std::max(noise.power_spectral_density(0) / 2, 1e-300);
+  return {noise.matrix().largest() + slope,
+          1 / slowest + 1 / (loss + held * held / (4 * strength))};
+}
+
+/// Paths by exact Gaussian steps. While a body rests they end where static friction is overcome, by
+/// the law of a Brownian bridge. While it slides the force within a step is its mean, and steps
+/// shorten until the noise can turn neither the speed within them nor, where they end the slide,
+/// the force; or down to the shortest step.
+template <class Flow>
+class GaussianSource : public ExcursionSource {
+ public:
+  GaussianSource(const model::Process& process, const Wanted& wanted)
+      : wanted_(wanted),
+        noise_(process.noise.gaussian->matrix()),
+        stationary_(root_of(noise_.p)),
+        sides_{Side(process), Side(process.mirrored())},
+        deviation_(process.noise.gaussian->deviation()),
+        diffusion_(deviation_ * noise_.b[0]),
+        size_(noise_.a.rows()),
+        within_(process.friction.mu_s),
+        now_(size_ + 1),
+        before_(size_),
+        normal_(size_ + 1) {
+    const Scales scales = scales_of(process);
+    const double longest = kLongest / scales.fastest;
+    steps_ = steps_of(noise_, deviation_, std::ldexp(longest, -kHalvings), kHalvings + 1);
+    span_ = kMemories * scales.memory;
+  }
+
+  void draw(RandomStream& random, int level, double place, Excursion& e) override {
+    place_ = place;
+    draw_from(level, random, e);
+  }
+
+  // Samples are all excursions that begin in a span of time: so each counts as often as it occurs.
+  void draw_from(int level, RandomStream& random, Excursion& e) override {
+    if (level == kPathBegins) {
+      begin(random);
+      while (time_ < span_) follow_one(random, e);
+      end_ = span_ * (2 + std::floor((time_ - span_) / span_));
+    }
+    follow_one(random, e);
+    e.next = time_ < end_ ? kPathBegins + 1 : kPathBegins;
+  }
+
+ private:
+  /// What a body that moves one way finds.
+  struct Side {
+    explicit Side(const model::Process& seen)
+        : drag(seen.drag),
+          flow(seen.drag),
+          start(seen.friction.mu_s - seen.bias),
+          balance(seen.friction.at_rest() - seen.bias) {}
+
+    model::Drag drag;
+    Flow flow;
+    double start, balance;  ///< forces of the noise that overcome friction, at rest and in motion
+  };
+  [[nodiscard]] const Side& side(int sign) const { return sides_[sign > 0 ? 0 : 1]; }
+  [[nodiscard]] double x() const { return deviation_ * now_[0]; }
+  /// By how much static friction exceeds the force of the noise.
+  [[nodiscard]] double room(int sign) const { return side(sign).start - sign * x(); }
+
+  // From rest, with the noise in its stationary distribution.
+  void begin(RandomStream& random) {
+    time_ = 0;
+    for (double& z : normal_) z = random.normal();
+    std::fill(now_.begin(), now_.end(), 0.0);
+    linalg::add_product(stationary_, normal_.data(), now_.data());
+    Excursion none;
+    none.integrals.resize(wanted_.observables.size());
+    stick(random, none);
+  }
+
+  void follow_one(RandomStream& random, Excursion& e) {
+    e = {.integrals = std::move(e.integrals)};
+    e.integrals.assign(wanted_.observables.size(), {});
+    e.upwards = sign_ > 0;
+    slide(random, e);
+    stick(random, e);
+  }
+
+  void slide(RandomStream& random, Excursion& e) {
+    for (double speed = 0;;) {
+      choose_for(speed);
+      const double from = x(), time = steps_[k_].time;
+      double mean = step(random, true);
+      const auto move = [&] {
+        const double force = sign_ * mean - side(sign_).balance;
+        return side(sign_).flow.move(speed, force, time, wanted_.integrals);
+      };
+      Piece piece = move();
+      // The shortest steps end as they are, as the force may have turned in them.
+      const bool cuts = piece.stopped && k_ > 0;
+      if (cuts) {
+        mean = from + (x() - from) * piece.time / (2 * time);
+        piece = move();
+        const double share = piece.time / time;
+        cut(share, random.normal() * std::sqrt(piece.time * (1 - share)));
+      }
+      follow(e, piece, mean, x() - from, piece.end - speed);
+      follow_noise(e, piece.time, from, x());
+      observe(e, &Integrals::slide, piece.time, {from, sign_ * speed}, {x(), sign_ * piece.end},
+              sign_);
+      speed = piece.end;
+      if (!piece.stopped) continue;
+      if (!cuts) rest(e, time - piece.time, x());
+      if (room(-sign_) >= 0) return;
+      sign_ = -sign_;  // pushed on the other way
+    }
+  }
+
+  // The longest step in which neither the speed nor, where the body stops, the force turns.
+  void choose_for(double speed) {
+    const double force = sign_ * x() - side(sign_).balance + side(sign_).drag(speed),
+                 bend = std::min(sign_ * drift(), 0.0) / 2, spread = kDeviations * diffusion_;
+    choose([&](int k) {
+      const auto& [h, root, rows] = steps_[k];
+      const bool moves = speed + h * (force + h * bend - spread * root / std::sqrt(3)) > 0;
+      return moves || (k <= kAtStops && kClear * spread * root < -force);
+    });
+  }
+
+  // Until static friction is overcome.
+  void stick(RandomStream& random, Excursion& e) {
+    for (int sign : {1, -1}) {
+      if (room(sign) < 0) return void(sign_ = sign);
+    }
+    for (double share = 2; share > 1;) {
+      choose([&](int k) {
+        return k <= kAtRest || std::min(room(1), room(-1)) > kRoom * diffusion_ * steps_[k].root;
+      });
+      const double from = x(), up = room(1), down = room(-1);
+      step(random, false);
+      const double upwards = starts(random, 1, up), downwards = starts(random, -1, down);
+      share = std::min(upwards, downwards);
+      if (share <= 1) {
+        sign_ = upwards < downwards ? 1 : -1;
+        const double there = sign_ * side(sign_).start / deviation_;
+        cut(share, (there - before_[0] - share * (now_[0] - before_[0])) / noise_.b[0]);
+      }
+      rest(e, std::min(share, 1.0) * steps_[k_].time, from);
+      ++e.jumps;
+    }
+  }
+
+  // The share of the last step after which static friction was overcome, which it exceeded the
+  // force by `before`; 2 if it was not.
+  double starts(RandomStream& random, int sign, double before) const {
+    const double after = room(sign), variance = diffusion_ * diffusion_ * steps_[k_].time,
+                 exponent = 2 * before * after / variance;
+    if (after > 0 && (exponent > 40 || random.uniform() >= std::exp(-exponent))) return 2;
+    return before > 0 ? arrival(random, before, std::abs(after), variance) : 0;
+  }
+
+  void rest(Excursion& e, double time, double from) {
+    e.stick += time;
+    follow_noise(e, time, from, x());
+    observe(e, &Integrals::stick, time, {from, 0}, {x(), 0}, 0);
+  }
+
+  [[nodiscard]] double drift() const {
+    double sum = 0;
+    for (int i = 0; i < size_; ++i) sum -= noise_.a(0, i) * now_[i];
+    return deviation_ * sum;
+  }
+
+  // The longest step that fits, or the shortest one.
+  void choose(const auto& fits) {
+    while (k_ < kHalvings && fits(k_ + 1)) ++k_;
+    while (k_ > 0 && !fits(k_)) --k_;
+  }
+
+  // The mean of X over the step where it is wanted.
+  double step(RandomStream& random, bool mean) {
+    const Step& step = steps_[k_];
+    const double* factor = step.rows.data();
+    std::copy_n(now_.begin(), size_, before_.begin());
+    for (int r = 0; r < size_ + (mean ? 1 : 0); ++r) {
+      normal_[r] = random.normal();
+      double sum = 0;
+      for (int c = 0; c < size_; ++c) sum += *factor++ * before_[c];
+      for (int c = 0; c <= r; ++c) sum += *factor++ * normal_[c];
+      now_[r] = sum;
+    }
+    time_ += step.time;
+    return now_[size_] / step.time;
+  }
+
+  // Back to where a share of the last step was over, and W was off its chord.
+  void cut(double share, double off) {
+    for (int i = 0; i < size_; ++i) {
+      now_[i] = before_[i] + share * (now_[i] - before_[i]) + noise_.b[i] * off;
+    }
+    time_ -= (1 - share) * steps_[k_].time;
+  }
+
+  // The force also changed by `turn` along the piece, and the speed by `rise`.
+  void follow(Excursion& e, const Piece& piece, double mean, double turn, double rise) const {
+    const double bend = sign_ * turn * piece.time / 12, path = piece.path - bend * piece.time;
+    ++e.jumps;
+    e.peak = std::max(e.peak, piece.end);
+    e.slide += piece.time;
+    e.path += path;
+    e.drift += sign_ * path;
+    e.square += piece.square - 2 * bend * path;
+    e.product += sign_ * mean * path + bend * rise;
+  }
+
+  // Halves of both ends, and half of one that stands on the threshold.
+  void follow_noise(Excursion& e, double time, double from, double to) const {
+    if (!wanted_.noise) return;
+    e.noise_square += time / 2 * (from * from + to * to);
+    for (double x : {from, to}) {
+      const double inside = within_ - std::abs(x);
+      e.within += time / 2 * (std::abs(inside) < 1e-9 * within_ ? 0.5 : inside > 0 ? 1 : 0);
+    }
+  }
+
+  struct At {
+    double x, v;
+  };
+  // Either end of a step.
+  void observe(Excursion& e, double Integrals::*part, double time, const At& from, const At& to,
+               int y) {
+    if (wanted_.observables.empty()) return;
+    place_ = std::fmod(place_ + 0.6180339887498949, 1);
+    const At& at = place_ < 0.5 ? from : to;
+    for (std::size_t f = 0; f < wanted_.observables.size(); ++f) {
+      e.integrals[f].*part += time * wanted_.observables[f](at.x, y, at.v);
+    }
+  }
+
+  Wanted wanted_;
+  Driven noise_;
+  Dense stationary_;
+  std::array<Side, 2> sides_;
+  double deviation_, diffusion_;
+  int size_;
+  double within_;
+  std::vector<Step> steps_;
+  std::vector<double> now_, before_, normal_;  // Z, and the integral of X over the last step
+  double span_ = 0, time_ = 0, end_ = 0, place_ = 0;
+  int k_ = 0, sign_ = 1;
+};
+
+}  // namespace
+
+std::unique_ptr<ExcursionSource> make_gaussian_source(const model::Process& process,
+                                                      const Wanted& wanted) {
+  if (process.drag.is_linear())
+    return std::make_unique<GaussianSource<LinearFlow>>(process, wanted);
+  return std::make_unique<GaussianSource<GeneralFlow>>(process, wanted);
+}
+
+double steps_of_sample(const model::Process& process) {
+  const auto [fastest, memory] = scales_of(process);
+  const auto& friction = process.friction;
+  const double deviation = process.noise.gaussian->deviation(), up = friction.mu_s - process.bias,
+               down = friction.mirrored().mu_s + process.bias,
+               beyond = (std::erfc(up / deviation / std::sqrt(2)) +
+                         std::erfc(down / deviation / std::sqrt(2))) /
+                        2;
+  return std::max(2 * kMemories * memory * fastest, 1 / beyond) / kLongest;
+}
+
+}  // namespace stickslip::simulation
