@@ -128,7 +128,6 @@ class Rules {
                simulated = method_.simulates && !r_.scene.spring;
     report("route", !solved && !simulated, why, "leave it out, or " + way);
     report("study", study_, why, "leave it out, or " + way);
-    report("compare", r_.scene.spring && settings_.has("compare"), why, "leave it out, or " + way);
     report("accuracy", simulated && q_.accuracy_given && q_.accuracy < 2 * simulation::kStepError,
            fmt::format("= {:g} is not reached by simulated paths of {}, whose steps leave {:g}",
                        q_.accuracy, option, simulation::kStepError),

@@ -169,7 +169,7 @@ Scales scales_of(const model::Process& process) {
   double slowest = kInfinity;
   for (const auto& term : noise.terms()) slowest = std::min(slowest, term.decay);
   const auto& [drag, friction] = std::tie(process.drag, process.friction);
-  const double speed = drag.terminal_velocity(3 * noise.deviation() + std::abs(process.bias)),
+  const double speed = drag.terminal_velocity(3 * noise.deviation()),
                slope = std::isfinite(speed) ? drag.steepest(speed) : 0,
                loss = std::isfinite(speed) ? -drag(speed) / speed : 0;
   // Under dry friction mu alone white noise of strength 2 D forgets its velocity at mu^2/(4 D).
@@ -182,7 +182,7 @@ Scales scales_of(const model::Process& process) {
 
 /// Paths by exact Gaussian steps. While a body rests they end where static friction is overcome, by
 /// the law of a Brownian bridge. While it slides the force within a step is its mean, and steps
-/// shorten until the noise can turn neither the speed within them nor, where they end the slide,
+/// shorten until the noise can turn neither the speed within them nor, where the body stops,
 /// the force; or down to the shortest step.
 template <class Flow>
 class GaussianSource : public ExcursionSource {
@@ -241,7 +241,7 @@ class GaussianSource : public ExcursionSource {
 
   // From rest, with the noise in its stationary distribution.
   void begin(RandomStream& random) {
-    time_ = 0;
+    time_ = k_ = 0;
     for (double& z : normal_) z = random.normal();
     std::fill(now_.begin(), now_.end(), 0.0);
     linalg::add_product(stationary_, normal_.data(), now_.data());
@@ -434,12 +434,11 @@ std::unique_ptr<ExcursionSource> make_gaussian_source(const model::Process& proc
 double steps_of_sample(const model::Process& process) {
   const auto [fastest, memory] = scales_of(process);
   const auto& friction = process.friction;
-  const double deviation = process.noise.gaussian->deviation(), up = friction.mu_s - process.bias,
-               down = friction.mirrored().mu_s + process.bias,
-               beyond = (std::erfc(up / deviation / std::sqrt(2)) +
-                         std::erfc(down / deviation / std::sqrt(2))) /
-                        2;
-  return std::max(2 * kMemories * memory * fastest, 1 / beyond) / kLongest;
+  const double scale = process.noise.gaussian->deviation() * std::sqrt(2),
+               up = friction.mu_s - process.bias, down = friction.mirrored().mu_s + process.bias,
+               beyond = (std::erfc(up / scale) + std::erfc(down / scale)) / 2;
+  // What is rarely left, or rarely met, takes long.
+  return std::max(2 * kMemories * memory * fastest, 1 / std::min(beyond, 1 - beyond)) / kLongest;
 }
 
 }  // namespace stickslip::simulation

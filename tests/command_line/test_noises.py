@@ -73,6 +73,17 @@ class Noises(Case):
                     message=("-start = s+: is one level",))
         self.refuse(*noise, "1,1", "-quantities", "slip", "-distance", "1", message=("asks for slip", "mu_d = mu_s"))
 
+    def test_gaussian_noise_is_simulated(self):
+        simulated = (*self.BAND, "-route", "monte_carlo", "-excursions", "600")
+        quantities = ("-quantities", "sticking,averages,slip,duration_density", "-observable", "v>0.5", "-time", "1",
+                      "-distance", "0.5")
+        self.run_ok(*simulated, *quantities, "-output", "simulated.h5")
+        compared = self.summary(*self.BAND, "-quantities", "sticking,moments,slip", "-accuracy", "1e-3",
+                                "-compare", "simulated.h5")["comparison"]
+        self.assertGreater(len(compared), 5)
+        self.refuse(*simulated, "-quantities", "peak", "-velocity", "0.1", message=("asks for peak", "simulated for"))
+        self.refuse(*simulated, "-accuracy", "1e-3", message=("-accuracy = 0.001: is not reached", "take 0.002 or more"))
+
     GROUND = ("-noise", "filtered", "-ground_frequency", "15.6", "-ground_damping", "0.6", "-noise_deviation", "2",
               "-mu_s", "1.5", "-mu_d", "0.75")
     BAND = ("-noise", "narrow_band", "-band_frequency", "1", "-band_width", "0.5", "-mu_d", "0.25")

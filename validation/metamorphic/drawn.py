@@ -122,7 +122,16 @@ def named(random):
     return options
 
 
-SCENES = {"ou": ou, "ou, weakening": weakening, "levels": levels, "any states": chain, "by name": named}
+def gaussian(random):
+    """Gaussian noise of continuous paths."""
+    word = random.choice(("ou", "narrow_band", "filtered"))
+    own = {"tau": log_uniform(random, 0.2, 4), "delta": 0} if word == "ou" else NAMED[word](random)
+    return friction_and_drag(random) | own | {"noise": word, "noise_deviation": log_uniform(random, 0.7, 2)}
+
+
+# What there is of it.
+OF_GAUSSIAN = ("averages", "autocorrelation", "laplace", "noise_law", "relaxation", "slip", "spectrum")
+SCENES = {"gaussian": gaussian, "ou": ou, "ou, weakening": weakening, "levels": levels, "any states": chain, "by name": named}
 
 
 def drawn(random):
@@ -131,8 +140,8 @@ def drawn(random):
     options = SCENES[kind](random)
     if "friction" not in options and "mu_s_minus" not in options and options["mu_d"] < 1 and random.random() < 0.15:
         options |= {"friction": "stribeck", "stribeck_velocity": log_uniform(random, 0.05, 2)}
-    quantity = random.choice(sorted(QUESTIONS))
-    accuracy = max(random.choice((1e-2, 1e-3, 1e-5)), LEAST_ACCURACY.get(quantity, 0))
+    quantity = random.choice(OF_GAUSSIAN if kind == "gaussian" else sorted(QUESTIONS))
+    accuracy = max(random.choice((1e-2, 1e-3, 1e-5)), LEAST_ACCURACY.get(quantity, 0), 1e-3 * (kind == "gaussian"))
     options |= {"quantities": f"sticking,moments,{quantity}", "accuracy": accuracy}
     for argument in QUESTIONS[quantity].split():
         options[argument] = ARGUMENTS[argument](random, options)

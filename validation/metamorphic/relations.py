@@ -23,8 +23,15 @@ def replaced(text, **names):
     return re.sub(r"\b(" + "|".join(names) + r")\b", lambda name: names[name[0]], text)
 
 
+def continuous(options):
+    """Whether the paths of the noise are."""
+    return options["noise"] in ("ou", "narrow_band", "filtered") and not options.get("delta")
+
+
 def states(options):
     """The noise as a chain of states in Python, or None."""
+    if continuous(options):
+        return None
     if isinstance(options["noise"], noise.Chain):
         return options["noise"]
     word = options["noise"]
@@ -192,7 +199,7 @@ def zero_noise(options, random):
     chain = states(options)
     if isinstance(options["noise"], noise.Chain) or (chain is not None and random.random() < 0.5):
         return with_noise(options, chain + noise.Chain([0, 0], [[0, rate], [rate, 0]])), of_more_states
-    if "telegraph" in options["noise"]:
+    if "telegraph" in options["noise"] or continuous(options):
         return None
     return options | {"noise": f"{options['noise']}+telegraph", "telegraph_amplitude": 1e-30,
                       "telegraph_rate": rate}, of_more_states
@@ -225,7 +232,7 @@ def no_symmetry(options, random):
 
 def each_level(options, random):
     """Every level of the noise as a node."""
-    return None if options["noise"] != "ou" or "scheme" in options else (options | {"noise_degree": 0}, same)
+    return None if options["noise"] != "ou" or "scheme" in options or continuous(options) else (options | {"noise_degree": 0}, same)
 
 
 CELLS = ("f_", "displacement_density", "fwhm", "t_corr")  # histograms, and what a sample cannot have

@@ -261,8 +261,8 @@ constexpr int kPathBegins = 0;
 /// Of noise of continuous paths, without what Wanted has of passages, transforms and discounts.
 [[nodiscard]] std::unique_ptr<ExcursionSource> make_gaussian_source(const model::Process& process,
                                                                     const Wanted& wanted);
-/// What its steps leave of error, relative to each result: intervals are so much wider. Three times
-/// what was seen, in P(|X| <= mu_s).
+/// What its steps leave of error, relative to each result: intervals are so much wider. With steps
+/// four times as long P_stick of a narrow band is off by 2e-3, P(|X| <= mu_s) by 3e-3.
 constexpr double kStepError = 1e-3;
 /// Steps of such a path that a sample takes at least.
 [[nodiscard]] double steps_of_sample(const model::Process& process);
