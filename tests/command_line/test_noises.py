@@ -75,12 +75,10 @@ class Noises(Case):
 
     def test_gaussian_noise_is_simulated(self):
         simulated = (*self.BAND, "-route", "monte_carlo", "-excursions", "600")
-        quantities = ("-quantities", "sticking,averages,slip,duration_density", "-observable", "v>0.5", "-time", "1",
-                      "-distance", "0.5")
-        self.run_ok(*simulated, *quantities, "-output", "simulated.h5")
-        compared = self.summary(*self.BAND, "-quantities", "sticking,moments,slip", "-accuracy", "1e-3",
-                                "-compare", "simulated.h5")["comparison"]
-        self.assertGreater(len(compared), 5)
+        self.run_ok(*simulated, "-quantities", "sticking,averages,slip,duration_density", "-observable", "v>0.5",
+                    "-time", "1", "-distance", "0.5", "-output", "simulated.h5")
+        compared = self.summary(*self.BAND, "-quantities", "sticking", "-accuracy", "0.03", "-compare", "simulated.h5")
+        self.assertEqual(len(compared["comparison"]), 4)  # all but one of two shares of the time
         self.refuse(*simulated, "-quantities", "peak", "-velocity", "0.1", message=("asks for peak", "simulated for"))
         self.refuse(*simulated, "-accuracy", "1e-3", message=("-accuracy = 0.001: is not reached", "take 0.002 or more"))
 

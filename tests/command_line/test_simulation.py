@@ -37,10 +37,10 @@ class Simulated(Case):
         self.assertNotIn("ci95", self.summary(*SMALL)["results"]["P_stick"])
 
     def test_ranks_give_equal_bits(self):
-        options = (*SIMULATE, *EVERYTHING, "-excursions", "20000")
-        alone = self.summary(*options)["results"]
-        for ranks in (1, 2, 3):
-            self.assertEqual(self.summary(*options, ranks=ranks)["results"], alone)
+        for options in ((*EVERYTHING, "-excursions", "20000"), ("-delta", "0", "-excursions", "600")):
+            alone = self.summary(*SIMULATE, *options)["results"]
+            for ranks in (1, 2, 3):
+                self.assertEqual(self.summary(*SIMULATE, *options, ranks=ranks)["results"], alone)
 
     def test_seeds(self):
         options = (*SIMULATE, "-excursions", "1000")
