@@ -129,8 +129,8 @@ class Rules {
     report("route", !solved && !simulated, why, "leave it out, or " + way);
     report("study", study_, why, "leave it out, or " + way);
     report("accuracy", simulated && q_.accuracy_given && q_.accuracy < 2 * simulation::kStepError,
-           fmt::format("= {:g} is not reached by simulated paths of {}, whose steps leave {:g}",
-                       q_.accuracy, option, simulation::kStepError),
+           fmt::format("is not reached by simulated paths of {}, whose steps leave {:g}", option,
+                       simulation::kStepError),
            fmt::format("take {:g} or more", 2 * simulation::kStepError));
     const auto of_levels = wanted([simulated](const auto& entry) {
       return simulated ? !entry.by_excursion : entry.of_levels;

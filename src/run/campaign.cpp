@@ -327,7 +327,7 @@ class Campaign {
     const auto& wanted = tally_.wanted();
     const double longest = wanted.time.empty() ? 0 : std::ranges::max(wanted.time),
                  jumps = process_.noise.gaussian ? simulation::steps_of_sample(process_)
-                                           : jumps_of_sample(longest);
+                                                 : jumps_of_sample(longest);
     constexpr double jump = 15e-9, month = 30 * 86400.0;
     const double seconds = given_.method.excursions * jumps * jump / linalg::ranks(comm_);
     if (seconds < month) return;

@@ -80,7 +80,7 @@ class Noises(Case):
         compared = self.summary(*self.BAND, "-quantities", "sticking", "-accuracy", "0.03", "-compare", "simulated.h5")
         self.assertEqual(len(compared["comparison"]), 4)  # all but one of two shares of the time
         self.refuse(*simulated, "-quantities", "peak", "-velocity", "0.1", message=("asks for peak", "simulated for"))
-        self.refuse(*simulated, "-accuracy", "1e-3", message=("-accuracy = 0.001: is not reached", "take 0.002 or more"))
+        self.refuse(*simulated, "-accuracy", "1e-3", message=("-accuracy = 1e-3: is not reached", "take 0.002 or more"))
 
     GROUND = ("-noise", "filtered", "-ground_frequency", "15.6", "-ground_damping", "0.6", "-noise_deviation", "2",
               "-mu_s", "1.5", "-mu_d", "0.75")
