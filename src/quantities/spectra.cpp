@@ -305,10 +305,14 @@ void find_spectrum(Computation& computation, bool direct) {
   ReducedSpectrum reduced;
   auto& spectrum = reduced.spectrum;
   if (direct) {
-    smooth.push_back(0);
+    // A body on a spring does not travel: S_v(0) = 0.
+    const bool travels = !computation.process().noise.has_positions();
+    if (travels) smooth.push_back(0);
     spectrum.value = direct_spectrum(computation.systems, distribution, smooth);
-    spectrum.at_zero = spectrum.value.back();
-    spectrum.value.pop_back();
+    if (travels) {
+      spectrum.at_zero = spectrum.value.back();
+      spectrum.value.pop_back();
+    }
   } else {
     reduced = reduced_spectrum(computation.systems, distribution, smooth, computation.tolerance());
   }
@@ -326,7 +330,9 @@ void find_spectrum(Computation& computation, bool direct) {
 
 void spectrum_tasks(Planner& planner) {
   planner.need_distribution();
-  const bool direct = planner.given().method.spectrum_solver == cases::SpectrumSolver::direct;
+  // What vanishes at 0 has no width there, which a reduced model would look for.
+  const bool direct = planner.given().method.spectrum_solver == cases::SpectrumSolver::direct ||
+                      planner.given().scene.spring;
   planner.needs().omega = planner.question().omega;
   // 0 as well, and the stationary distribution alone.
   const int frequencies = static_cast<int>(planner.question().omega.size()) + 2;

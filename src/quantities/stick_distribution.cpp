@@ -270,7 +270,7 @@ DurationDistribution stick_distribution(const model::Process& process,
   const auto found = flow.at(rising, std::move(start));
   result.density.resize(time.size());
   result.distribution.resize(time.size());
-  const double tied = process.noise.has_levels() ? 0 : kTied;
+  const double tied = process.noise.continuous() ? kTied : 0;
   for (std::size_t n = 0; n < found.size(); ++n) {
     const auto& [value, error, rounding, of_density, of_ended] = found[n];
     const double density = flow.leaving(value), ended = value.back(),

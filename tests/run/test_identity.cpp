@@ -24,17 +24,17 @@ namespace {
 using Options = std::map<std::string, std::string>;  // names without dash
 
 // Options that a checkpoint may be continued with, whatever their values.
-const std::set<std::string> kFree{"excursions",  // more of them extend a simulation
-                                  "accuracy",    // ends it sooner
-                                  "checkpoint",  // the file itself
-                                  "plan",        // simulates nothing
-                                  "horizon",     // of the trajectory, which is not tallied
-                                  // What -route monte_carlo does not know, or takes no notice of:
-                                  "route", "scheme", "degree", "layers", "noise_degree",
-                                  "noise_grading", "p", "v_max", "speed_limit", "spectrum_solver",
-                                  "tilt", "probability", "force_file", "force_interpolation",
-                                  "force_scale", "force_rest", "sample_layout", "sample_step",
-                                  "force_gravity", "covariance", "covariance_file"};
+const std::set<std::string> kFree{
+    "excursions",  // more of them extend a simulation
+    "accuracy",    // ends it sooner
+    "checkpoint",  // the file itself
+    "plan",        // simulates nothing
+    "horizon",     // of the trajectory, which is not tallied
+    // What -route monte_carlo does not know, or takes no notice of:
+    "route", "scheme", "degree", "layers", "noise_degree", "noise_grading", "p", "v_max",
+    "speed_limit", "spectrum_solver", "tilt", "probability", "force_file", "force_interpolation",
+    "force_scale", "force_rest", "sample_layout", "sample_step", "force_gravity", "covariance",
+    "covariance_file", "spring_stiffness"};
 
 // Options that change only along with others: each command line below has its own.
 const std::set<std::string> kWithOthers{"friction", "noise"};
