@@ -172,7 +172,7 @@ Spring::Spring(Body body, const NoiseChain& chain)
   if (width <= held) {
     throw UnfitTable(
         0, fmt::format("all levels of the noise, which are {:g} apart from the lowest to the "
-                       "highest, hold the body at positions in the middle: it comes to rest there "
+                       "highest, hold the body at positions between: it comes to rest there "
                        "for ever, P_stick = 1 and V = 0",
                        width));
   }
@@ -260,6 +260,30 @@ std::vector<double> Spring::ends_of_positions(const Thresholds& thresholds, int 
   return ends;
 }
 
+// By the force of the noise alone, at its even steps: f = X - K p at each position.
+Shown Spring::shown_by(const AlongForce& x, const std::vector<double>& positions) const {
+  const double scale = scales_.force, k = body_.stiffness;
+  const std::size_t across = positions.size();
+  Shown shown;
+  constexpr int half = 100;
+  const double step = 6 * noise_.deviation / half;
+  for (int i = -half; i <= half; ++i) {
+    shown.x.push_back(step * i);
+    auto& shares = shown.of.emplace_back();
+    for (std::size_t j = 0; j < across; ++j) {
+      const double z = (step * i - k * positions[j]) / scale;
+      if (z < x.z.front() || z > x.z.back()) continue;
+      const auto& [first, element] = x.element_at(z);
+      for (std::size_t n = 0; n < element.z.size(); ++n) {
+        const std::size_t node = static_cast<std::size_t>(first) + n;
+        shares.push_back({static_cast<int>(node * across + j),
+                          step * element.cardinal(n, z) / (x.w[node] * scale)});
+      }
+    }
+  }
+  return shown;
+}
+
 Projection Spring::of_coloured(const Thresholds& thresholds, int order) const {
   const double scale = scales_.force, k = body_.stiffness;
   const ForceLayout grid = forces_of(thresholds, scale, reach(order), order);
@@ -305,22 +329,7 @@ Projection Spring::of_coloured(const Thresholds& thresholds, int order) const {
   made.intensity = made.peak_intensity = noise_.deviation * noise_.deviation * noise_.tau;
   made.step = grid.finest * scale;
   made.rate = 2 * diffusion / (grid.finest * grid.finest);
-  constexpr int half = 100;
-  const double step = 6 * noise_.deviation / half;
-  for (int i = -half; i <= half; ++i) {
-    made.shown.x.push_back(step * i);
-    auto& shares = made.shown.of.emplace_back();
-    for (std::size_t j = 0; j < across; ++j) {
-      const double z = (step * i - k * y.p[j]) / scale;
-      if (z < x.z.front() || z > x.z.back()) continue;
-      const auto& [first, element] = x.element_at(z);
-      for (std::size_t n = 0; n < element.z.size(); ++n) {
-        const std::size_t node = static_cast<std::size_t>(first) + n;
-        shares.push_back({static_cast<int>(node * across + j),
-                          step * element.cardinal(n, z) / (x.w[node] * scale)});
-      }
-    }
-  }
+  made.shown = shown_by(x, y.p);
   return made;
 }
 

@@ -11,6 +11,8 @@
 
 namespace stickslip::model {
 
+struct AlongForce;
+
 /// dp/dt = v, dv/dt = f + b(v) - F(|v|) sign v with the force f = X - K (p - g/K) of the noise and
 /// the spring; a body sticks while |f| <= mu_s. A bias g shifts all positions by g/K and does
 /// nothing else. Nodes stand for pairs of a force and a position:
@@ -59,6 +61,7 @@ class Spring final : public Projector {
   [[nodiscard]] Scales find_scales() const;
   [[nodiscard]] double reach(int order) const;
   [[nodiscard]] Projection of_coloured(const Thresholds& thresholds, int order) const;
+  [[nodiscard]] Shown shown_by(const AlongForce& x, const std::vector<double>& positions) const;
   [[nodiscard]] Projection of_chain(const Thresholds& thresholds, int order) const;
   [[nodiscard]] std::vector<double> ends_of_positions(const Thresholds& thresholds,
                                                       int order) const;

@@ -244,6 +244,42 @@ void append(const Choice& all, std::vector<Option>& options) {
   }
 }
 
+// What acts on the body beside noise, friction and drag, and what bounds its speed.
+std::vector<Option> options_of_the_body() {
+  return {
+      Option::real(
+          "bias", "force", "0", {},
+          "constant force g added to X, such as the weight along an inclined plane. It breaks the "
+          "symmetry: both velocity branches are computed",
+          "take for example 0.1",
+          {.symbol = "g",
+           .label = "bias",
+           .slider = Slider{.low = -0.9, .high = 0.9, .start = 0},
+           .others = {"g", "force", "gravity", "slope"}}),
+      Option::real(
+          kStiffness, "1/time^2", "", Range::positive(),
+          "stiffness K of a spring that pulls the body at p back by -K p, dp/dt = v, per unit "
+          "mass. "
+          "Under -noise ou without -delta, or with -delta 0, the noise is the continuous one",
+          "leave it out for a body without a spring",
+          {.symbol = "K",
+           .label = "stiffness of the spring",
+           .slider = Slider{.low = 0.1, .high = 25, .logarithmic = true},
+           .others = {"K", "k", "spring", "stiffness", "spring_constant", "restoring_force",
+                      "trap"},
+           .page = "docs/spring.md"}),
+      Option::real(
+          "v_max", "velocity", "", Range::positive(),
+          "truncation velocity: bodies that reach it wait there until the noise falls. Unless "
+          "given, the largest velocity that matters at -accuracy",
+          kChosen),
+      Option::real(
+          "speed_limit", "velocity", "", Range::positive(),
+          "largest speed of the body: forces that would drive it beyond are lost, as the inflow of "
+          "a full buffer is. A part of the model, where -v_max only truncates it",
+          "leave it out for a body that is as fast as forces make it")};
+}
+
 std::vector<Option> made() {
   std::vector<Option> all{
       Option::real(
@@ -281,38 +317,7 @@ std::vector<Option> made() {
   for (const auto* each : choices()) append(*each, all);
   for (const auto& force : {force_options(), sample_options()})
     all.insert(all.end(), force.begin(), force.end());
-  const std::vector<Option> others{
-      Option::real(
-          "bias", "force", "0", {},
-          "constant force g added to X, such as the weight along an inclined plane. It breaks the "
-          "symmetry: both velocity branches are computed",
-          "take for example 0.1",
-          {.symbol = "g",
-           .label = "bias",
-           .slider = Slider{.low = -0.9, .high = 0.9, .start = 0},
-           .others = {"g", "force", "gravity", "slope"}}),
-      Option::real(
-          kStiffness, "1/time^2", "", Range::positive(),
-          "stiffness K of a spring that pulls the body at p back by -K p, dp/dt = v, per unit "
-          "mass. "
-          "Under -noise ou without -delta, or with -delta 0, the noise is the continuous one",
-          "leave it out for a body without a spring",
-          {.symbol = "K",
-           .label = "stiffness of the spring",
-           .slider = Slider{.low = 0.1, .high = 25, .logarithmic = true},
-           .others = {"K", "k", "spring", "stiffness", "spring_constant", "restoring_force",
-                      "trap"},
-           .page = "docs/spring.md"}),
-      Option::real(
-          "v_max", "velocity", "", Range::positive(),
-          "truncation velocity: bodies that reach it wait there until the noise falls. Unless "
-          "given, the largest velocity that matters at -accuracy",
-          kChosen),
-      Option::real(
-          "speed_limit", "velocity", "", Range::positive(),
-          "largest speed of the body: forces that would drive it beyond are lost, as the inflow of "
-          "a full buffer is. A part of the model, where -v_max only truncates it",
-          "leave it out for a body that is as fast as forces make it")};
+  const auto others = options_of_the_body();
   all.insert(all.end(), others.begin(), others.end());
   return all;
 }
