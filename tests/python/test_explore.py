@@ -315,7 +315,8 @@ class Knobs(Case):
                              set(made.offered["noise"]))
         self.assertEqual(made.offered["drag"], ["linear", "none", "cubic"])  # a formula is no slider
         frictions, noises, drags = (made.offered[name] for name in ("friction", "noise", "drag"))
-        for mu_s, friction, noise, drag in (*itertools.product((1,), frictions, noises, drags),
+        pairs = itertools.product(noises, drags)  # with frictions in turn, so that all pairs of choices occur
+        for mu_s, friction, noise, drag in (*((1, frictions[n % len(frictions)], *pair) for n, pair in enumerate(pairs)),
                                             *itertools.product((2,), ("coulomb",), noises, ("none",))):
             with self.subTest(mu_s=mu_s, friction=friction, noise=noise, drag=drag):
                 made.restart()
