@@ -222,7 +222,10 @@ void append_positions(const model::Process& process, const Excursion& excursion,
     add(process.noise, process.lowest_static() + static_cast<int>(n), 1, excursion.stick_time[n]);
   }
   const double total = excursion.mean_excursion();
-  results.push_back(scalar(cases::kEP, process.drifts() ? p / total : 0, 0));
+  // A bias leaves the process its symmetry, about g/K.
+  const auto& noise = process.noise;
+  const bool centred = noise.position(noise.lowest()) == -noise.position(noise.highest());
+  results.push_back(scalar(cases::kEP, process.drifts() || !centred ? p / total : 0, 0));
   results.push_back(scalar(cases::kEP2, square / total, 0));
   results.push_back(scalar(cases::kEXP, with_noise / total, 0));
 }

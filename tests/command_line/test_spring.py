@@ -62,6 +62,8 @@ class Spring(Case):
         for key in ("P_stick", "mean_slide", "E_V2", "E_XV"):
             self.assertAlmostEqual(results[key]["value"] / without[key]["value"], 1, delta=1e-10)
         self.assertEqual(results["E_V"]["value"], 0)
+        self.assertEqual(without["E_P"]["value"], 0)
+        self.assertAlmostEqual(results["E_P"]["value"], 0.7, delta=1e-9)
         self.assertAlmostEqual(results["E_P2"]["value"], without["E_P2"]["value"] + 0.7**2, delta=1e-9)
 
     def test_friction_by_direction_shifts_the_body(self):
