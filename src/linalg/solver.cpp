@@ -360,7 +360,7 @@ Analysis analyse(KSP ksp, Mat matrix, const std::string& prefix) {
 namespace {
 
 constexpr double kBackwardErrorLimit = 1e-12;
-constexpr int kMostRefinementSteps = 4;  // each but the first only where others leave too much
+constexpr int kMostRefinementSteps = 2;  // the second only where the first leaves too much
 constexpr std::size_t kTogether = 32;    // right-hand sides, in memory at once
 
 }  // namespace

@@ -175,7 +175,7 @@ class Extension(Case):
         self.assertFalse(own & shown())
         made.choose("drag", "quadratic")
         made.choose("noise", "three_levels")
-        self.assertEqual(own | {"mu_s", "mu_d", "mu_s_minus", "mu_d_minus", "bias"}, shown())
+        self.assertEqual(own | {"mu_s", "mu_d", "mu_s_minus", "mu_d_minus", "bias", "spring_stiffness"}, shown())
         self.assertIn("$c_2$", made.sliders["drag_quadratic"].label.get_text())
         self.assertEqual({option: made.scene()[option] for option in own},
                          {"drag_quadratic": 2, "step_force": 2, "step_rate": 0.5})
