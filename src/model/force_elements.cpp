@@ -13,25 +13,42 @@ double normal_weight(double z) { return std::exp(-z * z / 2) / std::sqrt(2 * std
 
 double even_weight(double) { return 1; }
 
-namespace {
+LegendreRule::LegendreRule(int size) {
+  std::vector<double> beside;
+  for (int n = 1; n < size; ++n) beside.push_back(n / std::sqrt(4.0 * n * n - 1));
+  linalg::TridiagonalEigen eigen(std::vector<double>(static_cast<std::size_t>(size), 0.0), beside);
+  node = std::move(eigen.value);
+  for (int n = 0; n < size; ++n) weight.push_back(2 * std::pow(eigen.vectors(0, n), 2));
+}
 
-struct LegendreRule {
-  std::vector<double> node, weight;  // on [-1, 1]
-
-  explicit LegendreRule(int size) {
-    std::vector<double> beside;
-    for (int n = 1; n < size; ++n) beside.push_back(n / std::sqrt(4.0 * n * n - 1));
-    linalg::TridiagonalEigen eigen(std::vector<double>(static_cast<std::size_t>(size), 0.0),
-                                   beside);
-    node = std::move(eigen.value);
-    for (int n = 0; n < size; ++n) weight.push_back(2 * std::pow(eigen.vectors(0, n), 2));
+double cardinal(const std::vector<double>& nodes, std::size_t k, double at) {
+  double product = 1;
+  for (std::size_t l = 0; l < nodes.size(); ++l) {
+    if (l != k) product *= (at - nodes[l]) / (nodes[k] - nodes[l]);
   }
-};
+  return product;
+}
 
-}  // namespace
+Dense derivatives(const std::vector<double>& nodes) {
+  const int size = static_cast<int>(nodes.size());
+  std::vector<double> scale(nodes.size(), 1.0);
+  for (int k = 0; k < size; ++k) {
+    for (int l = 0; l < size; ++l) {
+      if (l != k) scale[k] /= nodes[k] - nodes[l];
+    }
+  }
+  Dense d(size, size);
+  for (int k = 0; k < size; ++k) {
+    for (int l = 0; l < size; ++l) {
+      if (l == k) continue;
+      d(k, l) = scale[l] / scale[k] / (nodes[k] - nodes[l]);
+      d(k, k) -= d(k, l);
+    }
+  }
+  return d;
+}
 
-ForceElement::ForceElement(double low, double high, int p, Weight weight)
-    : z{low}, d(p + 1, p + 1) {
+ForceElement::ForceElement(double low, double high, int p, Weight weight) : z{low} {
   static const LegendreRule fine(80);
   const double middle = (low + high) / 2, half = (high - low) / 2;
   std::vector<double> points, weights, inner;
@@ -47,7 +64,7 @@ ForceElement::ForceElement(double low, double high, int p, Weight weight)
     z.insert(z.end(), found.begin(), found.end());
   }
   z.push_back(high);
-  find_derivatives();
+  d = derivatives(z);
   // As sums of positive terms: l_k^2 has the degree 2 p, one too many, for inner nodes l_k^2 over
   // a factor that vanishes at an end has not.
   for (int k = 0; k <= p; ++k) {
@@ -65,29 +82,16 @@ ForceElement::ForceElement(double low, double high, int p, Weight weight)
   }
 }
 
-double ForceElement::cardinal(std::size_t k, double at) const {
-  double product = 1;
-  for (std::size_t l = 0; l < z.size(); ++l) {
-    if (l != k) product *= (at - z[l]) / (z[k] - z[l]);
+std::vector<SpecialForce> special_forces(const Thresholds& thresholds, double scale, double finest,
+                                         double at_starts) {
+  std::vector<SpecialForce> special;
+  for (int side : {0, 1}) {
+    const double start = thresholds.start[side] / scale, balance = thresholds.balance[side] / scale;
+    const bool one = std::abs(start - balance) <= kApart, upper = side == 1;
+    special.push_back({start, one ? finest : std::max(finest, at_starts), one, upper});
+    if (!one) special.push_back({balance, finest, true, upper});
   }
-  return product;
-}
-
-void ForceElement::find_derivatives() {
-  const int size = static_cast<int>(z.size());
-  std::vector<double> scale(z.size(), 1.0);
-  for (int k = 0; k < size; ++k) {
-    for (int l = 0; l < size; ++l) {
-      if (l != k) scale[k] /= z[k] - z[l];
-    }
-  }
-  for (int k = 0; k < size; ++k) {
-    for (int l = 0; l < size; ++l) {
-      if (l == k) continue;
-      d(k, l) = scale[l] / scale[k] / (z[k] - z[l]);
-      d(k, k) -= d(k, l);
-    }
-  }
+  return special;
 }
 
 namespace {

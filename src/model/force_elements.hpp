@@ -1,12 +1,30 @@
 #pragma once
 /// Continuous piecewise polynomials along the force, for noise of continuous paths.
 
+#include <cstddef>
 #include <utility>
 #include <vector>
 
 #include "stickslip/linalg/dense.hpp"
+#include "stickslip/model/noise_chain.hpp"
 
 namespace stickslip::model {
+
+// Polynomials by their values at nodes.
+
+/// Nodes and weights of the Gauss-Legendre rule on [-1, 1].
+struct LegendreRule {
+  std::vector<double> node, weight;
+
+  explicit LegendreRule(int size);
+};
+
+/// At a place the polynomial that is 1 at the k-th node and 0 at the others.
+[[nodiscard]] double cardinal(const std::vector<double>& nodes, std::size_t k, double at);
+/// D_kl: the derivatives of these polynomials l at the nodes k.
+[[nodiscard]] linalg::Matrix<double> derivatives(const std::vector<double>& nodes);
+
+// Elements along the force.
 
 /// Weight of functions of the force: the normal density, or 1.
 using Weight = double (*)(double);
@@ -21,10 +39,9 @@ struct ForceElement {
 
   ForceElement(double low, double high, int p, Weight weight);
   /// The cardinal function of a node.
-  [[nodiscard]] double cardinal(std::size_t k, double at) const;
-
- private:
-  void find_derivatives();
+  [[nodiscard]] double cardinal(std::size_t k, double at) const {
+    return model::cardinal(z, k, at);
+  }
 };
 
 /// Ends of elements and their degrees.
@@ -40,6 +57,11 @@ struct SpecialForce {
   bool balance;  ///< whether elements beside it need few digits, as they are short
   bool upper;    ///< the side to which bodies move there
 };
+
+/// Where bodies start and where friction balances the force, in units of `scale`: the elements
+/// beside balance points have the size `finest`, beside other starts at least `at_starts`.
+[[nodiscard]] std::vector<SpecialForce> special_forces(const Thresholds& thresholds, double scale,
+                                                       double finest, double at_starts);
 
 /// Elements on [-reach, reach] that end at the special points and grow from there, none longer than
 /// `longest`; of the degree `at_rest` inside of starts.

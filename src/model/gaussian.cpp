@@ -17,14 +17,6 @@ namespace {
 
 using Dense = linalg::Matrix<double>;
 
-Dense transposed(const Dense& m) {
-  Dense t(m.columns(), m.rows());
-  for (int r = 0; r < m.rows(); ++r) {
-    for (int c = 0; c < m.columns(); ++c) t(c, r) = m(r, c);
-  }
-  return t;
-}
-
 double dot(const std::vector<double>& a, const std::vector<double>& b) {
   return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
 }
@@ -325,14 +317,9 @@ Layout layout_of(const Dense& a, double deviation, const Thresholds& thresholds,
   Layout made{{}, {}, std::max({apart, together, least}), {}};
   // Beyond 5, 6 and 7 deviations lie 1e-5, 1e-7 and 1e-10 of E[X^2].
   const double reach = std::min(7.0, 3.5 + order / 2.0);
-  std::vector<SpecialForce> special;
-  for (int side : {0, 1}) {
-    const double start = thresholds.start[side] / deviation,
-                 balance = thresholds.balance[side] / deviation;
-    const bool one = std::abs(start - balance) <= kApart;
-    special.push_back(
-        {start, one ? made.finest : std::max(made.finest, at_starts), one, side == 1});
-    if (!one) special.push_back({balance, made.finest, true, side == 1});
+  const auto special = special_forces(thresholds, deviation, made.finest, at_starts);
+  for (double force : thresholds.start) {
+    const double start = force / deviation;
     if (std::abs(start) < reach) made.cuts.push_back(start);
   }
   constexpr double longest = 3;
@@ -349,10 +336,7 @@ bool GaussianNoise::fits(const Thresholds& thresholds, int order) const {
   return layout_of(a_, deviation_, thresholds, order).nodes() <= kMostNodes;
 }
 
-std::shared_ptr<const LevelTable> GaussianNoise::projected(const Thresholds& thresholds,
-                                                           int order) const {
-  auto& known = made_[{thresholds, order}];
-  if (known) return known;
+Projection GaussianNoise::projection(const Thresholds& thresholds, int order) const {
   const Layout grid = layout_of(a_, deviation_, thresholds, order);
   if (grid.nodes() > kMostNodes) {
     throw UnfitTable(terms_.size(), fmt::format("the terms take {} nodes, and at most {} are taken",
@@ -366,8 +350,7 @@ std::shared_ptr<const LevelTable> GaussianNoise::projected(const Thresholds& thr
   made.peak_intensity = peak_ / 2;
   made.step = grid.finest * deviation_;
   made.rate = 2 * a_(0, 0) / (grid.finest * grid.finest);
-  const auto mirrored = [](const std::array<double, 2>& at) { return at[0] == -at[1]; };
-  made.even = mirrored(thresholds.start) && mirrored(thresholds.balance);
+  made.even = thresholds.alike_both_ways();
   made.reversed = made.even && a_.rows() <= 2;
   const auto force = x.forces(deviation_, thresholds.start[1], thresholds.start[0]);
   const double total = std::accumulate(x.w.begin(), x.w.end(), 0.0);
@@ -389,7 +372,7 @@ std::shared_ptr<const LevelTable> GaussianNoise::projected(const Thresholds& thr
       made.transitions.push_back({static_cast<std::size_t>(r), static_cast<std::size_t>(c), rate});
     }
   }
-  return known = std::make_shared<const LevelTable>(LevelTable::of(made));
+  return made;
 }
 
 }  // namespace stickslip::model

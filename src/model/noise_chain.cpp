@@ -127,6 +127,15 @@ LevelTable::LevelTable(const std::vector<double>& given,
   find_tails();
 }
 
+std::shared_ptr<const LevelTable> Projector::projected(const Thresholds& thresholds,
+                                                       int order) const {
+  auto& known = made_[{thresholds, order}];
+  if (!known) {
+    known = std::make_shared<const LevelTable>(LevelTable::of(projection(thresholds, order)));
+  }
+  return known;
+}
+
 LevelTable LevelTable::of(const Projection& projection) {
   LevelTable table;
   table.jumps_.resize(projection.x.size());

@@ -26,14 +26,11 @@ struct Positions {
   Dense upwards, downwards;
 
   Positions(const std::vector<double>& ends, int nodes, bool bounded) : bounded_(bounded) {
-    std::vector<double> beside;
-    for (int n = 1; n < nodes; ++n) beside.push_back(n / std::sqrt(4.0 * n * n - 1));
-    const linalg::TridiagonalEigen rule(std::vector<double>(static_cast<std::size_t>(nodes), 0.0),
-                                        beside);
+    const LegendreRule rule(nodes);
     for (int m = 0; m < nodes; ++m) {
-      node_.push_back((rule.value[m] - rule.value[nodes - 1 - m]) / 2);
-      weight_.push_back(std::pow(rule.vectors(0, m), 2) +
-                        std::pow(rule.vectors(0, nodes - 1 - m), 2));
+      const int there = nodes - 1 - m;
+      node_.push_back((rule.node[m] - rule.node[there]) / 2);
+      weight_.push_back((rule.weight[m] + rule.weight[there]) / 2);
     }
     std::vector<double> reversed;
     for (std::size_t e = 0; e + 1 < ends.size(); ++e) {
@@ -50,33 +47,14 @@ struct Positions {
   }
 
  private:
-  // The cardinal functions of the nodes of [-1, 1] at a place.
-  [[nodiscard]] std::vector<double> at(double t) const {
-    std::vector<double> values;
-    for (std::size_t k = 0; k < node_.size(); ++k) {
-      double product = 1;
-      for (std::size_t l = 0; l < node_.size(); ++l) {
-        if (l != k) product *= (t - node_[l]) / (node_[k] - node_[l]);
-      }
-      values.push_back(product);
-    }
-    return values;
-  }
-
   [[nodiscard]] Dense derivative(const std::vector<double>& ends) const {
     const int q = static_cast<int>(node_.size()), elements = static_cast<int>(ends.size()) - 1;
-    const auto left = at(-1), right = at(1);
-    Dense inner(q, q), d(q * elements, q * elements);
-    for (int k = 0; k < q; ++k) {
-      for (int l = 0; l < q; ++l) {
-        if (l == k) continue;
-        double product = 1 / (node_[l] - node_[k]);
-        for (int m = 0; m < q; ++m) {
-          if (m != k && m != l) product *= (node_[k] - node_[m]) / (node_[l] - node_[m]);
-        }
-        inner(k, l) = product;
-        inner(k, k) -= product;
-      }
+    const Dense inner = derivatives(node_);
+    Dense d(q * elements, q * elements);
+    std::vector<double> left, right;
+    for (std::size_t k = 0; k < node_.size(); ++k) {
+      left.push_back(cardinal(node_, k, -1));
+      right.push_back(cardinal(node_, k, 1));
     }
     for (int e = 0; e < elements; ++e) {
       const double half = (ends[e + 1] - ends[e]) / 2;
@@ -118,10 +96,6 @@ void symmetrise(AlongForce& x) {
   }
 }
 
-bool alike_both_ways(const Thresholds& t) {
-  return t.start[0] == -t.start[1] && t.balance[0] == -t.balance[1];
-}
-
 void normalise(std::vector<double>& p) {
   const double total = std::accumulate(p.begin(), p.end(), 0.0);
   for (double& value : p) value /= total;
@@ -137,18 +111,13 @@ struct ForceLayout {
 ForceLayout forces_of(const Thresholds& thresholds, double scale, double reach, int order) {
   ForceLayout made{{}, {}, 0.4 * std::pow(0.6, order - 3)};
   constexpr double at_starts = 0.8, longest = 2.5;
-  std::vector<SpecialForce> special;
+  constexpr double beyond = 2.5;
   double end = reach;
-  for (int side : {0, 1}) {
-    const double start = thresholds.start[side] / scale, balance = thresholds.balance[side] / scale;
-    const bool one = std::abs(start - balance) <= kApart;
-    special.push_back(
-        {start, one ? made.finest : std::max(made.finest, at_starts), one, side == 1});
-    if (!one) special.push_back({balance, made.finest, true, side == 1});
-    constexpr double beyond = 2.5;
-    end = std::max(end, std::abs(start) + beyond);
-    made.cuts.push_back(start);
+  for (double force : thresholds.start) {
+    made.cuts.push_back(force / scale);
+    end = std::max(end, std::abs(force / scale) + beyond);
   }
+  const auto special = special_forces(thresholds, scale, made.finest, at_starts);
   const int degree = 3 + (order - 2) / 2;
   made.mesh = force_mesh(special, end, longest, degree, degree);
   return made;
@@ -290,7 +259,7 @@ Projection Spring::of_coloured(const Thresholds& thresholds, int order) const {
   AlongForce x(grid.mesh, grid.cuts, even_weight);
   const Positions y(ends_of_positions(thresholds, order), nodes_of_element(order), false);
   Projection made;
-  made.even = made.reversed = alike_both_ways(thresholds);
+  made.even = made.reversed = thresholds.alike_both_ways();
   if (made.even) symmetrise(x);
   const auto force = x.forces(scale, thresholds.start[1], thresholds.start[0]);
   const std::size_t along = force.size(), across = y.p.size();
@@ -354,7 +323,7 @@ Projection Spring::of_chain(const Thresholds& thresholds, int order) const {
   for (std::size_t m = 0; m < nodes.size(); ++m) place[nodes[m].level * across + nodes[m].j] = m;
   Projection made;
   made.continuous = false;
-  made.even = alike_both_ways(thresholds) && chain_->even();
+  made.even = thresholds.alike_both_ways() && chain_->even();
   made.reversed = made.even && chain_->even_in_order();
   for (std::size_t m = 0; m < nodes.size(); ++m) {
     const auto& [x, level, j] = nodes[m];
@@ -394,15 +363,12 @@ bool Spring::fits(const Thresholds& thresholds, int order) const {
   return along * across <= kMostPairs;
 }
 
-std::shared_ptr<const LevelTable> Spring::projected(const Thresholds& thresholds, int order) const {
-  auto& known = made_[{thresholds, order}];
-  if (known) return known;
+Projection Spring::projection(const Thresholds& thresholds, int order) const {
   if (!fits(thresholds, order)) {
     throw UnfitTable(0,
                      fmt::format("takes more than {} pairs of a force and a position", kMostPairs));
   }
-  const Projection made = chain_ ? of_chain(thresholds, order) : of_coloured(thresholds, order);
-  return known = std::make_shared<const LevelTable>(LevelTable::of(made));
+  return chain_ ? of_chain(thresholds, order) : of_coloured(thresholds, order);
 }
 
 }  // namespace stickslip::model

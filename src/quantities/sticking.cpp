@@ -275,6 +275,22 @@ double stick_density_at_zero(const model::Process& process, const std::vector<do
   return std::inner_product(rates.begin(), rates.end(), entry.begin(), 0.0);
 }
 
+namespace {
+
+// Of the noise alone, which nodes of one level and several positions share.
+model::NoiseMoments moments_of_pairs(const model::NoiseChain& noise, double mu_s) {
+  const auto p = model::stationary_distribution(noise);
+  model::NoiseMoments moments{0, 0, 0};
+  for (int i = noise.lowest(); i <= noise.highest(); ++i) {
+    const double x = noise.noise(i), share = p[static_cast<std::size_t>(i - noise.lowest())];
+    (std::abs(x) <= mu_s ? moments.within : moments.beyond) += share;
+    moments.square += share * x * x;
+  }
+  return moments;
+}
+
+}  // namespace
+
 void append_noise_distribution(const model::Process& process, Results& results) {
   const auto& noise = process.noise;
   const double mu_s = process.friction.mu_s;
@@ -287,16 +303,9 @@ void append_noise_distribution(const model::Process& process, Results& results) 
         scalar(cases::kEX2, sigma * sigma, std::numeric_limits<double>::epsilon() * sigma * sigma));
     return;
   }
-  auto moments = model::noise_moments(noise, noise.first_from(-mu_s), noise.last_up_to(mu_s));
-  if (noise.has_positions()) {
-    const auto p = model::stationary_distribution(noise);
-    moments.within = moments.square = 0;
-    for (int i = noise.lowest(); i <= noise.highest(); ++i) {
-      const double x = noise.noise(i), share = p[static_cast<std::size_t>(i - noise.lowest())];
-      moments.within += std::abs(x) <= mu_s ? share : 0;
-      moments.square += share * x * x;
-    }
-  }
+  const auto moments = noise.has_positions() ? moments_of_pairs(noise, mu_s)
+                                             : model::noise_moments(noise, noise.first_from(-mu_s),
+                                                                    noise.last_up_to(mu_s));
   const double rounding = model::rounding_of_sums(noise);
   results.push_back(scalar(cases::kPWithin, moments.within, rounding * moments.within));
   results.push_back(scalar(cases::kEX2, moments.square, rounding * moments.square));

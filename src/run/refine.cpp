@@ -40,9 +40,9 @@ constexpr double kEarlierOfTables = 4, kOtherFamilyOfTables = 0.6;
 // Of projections modes are added. Of a noise that is damped before it turns, errors fall by a ratio
 // that rises by no more than half from one step to the next. Of narrow bands they fall fast at
 // first, and then by less than half a step, which no change tells beforehand.
+constexpr double kLastOfProjections = 2.5, kEarlierOfProjections = 0.05, kFallOfProjections = 4;
 // Of levels with positions functions jump along curves, and errors fall slowly.
 constexpr double kLastOfCurves = 4;
-constexpr double kLastOfProjections = 2.5, kEarlierOfProjections = 0.05, kFallOfProjections = 4;
 // Where elements move from level to level changes tell less.
 constexpr double kOnOtherElements = 1.4;
 // Where friction weakens errors fall as they otherwise do so many degrees higher.

@@ -19,14 +19,6 @@ namespace {
 
 using Dense = linalg::Matrix<double>;
 
-Dense transposed(const Dense& m) {
-  Dense t(m.columns(), m.rows());
-  for (int r = 0; r < m.rows(); ++r) {
-    for (int c = 0; c < m.columns(); ++c) t(c, r) = m(r, c);
-  }
-  return t;
-}
-
 /// X = deviation Z_1 of dZ = -A Z dt + b dW, driven by one Wiener process. With p = E[Z Z^T] the
 /// covariance of X is that of the noise where p e_1 = e_1, and A p + p A^T = b b^T. With A = ((a,
 /// r), (q, s)) that leaves a Riccati equation for the other rows and columns P of p,

@@ -104,6 +104,15 @@ template <class Scalar>
   add_product(1, a, b, b.columns(), c);
   return c;
 }
+/// A^T.
+template <class Scalar>
+[[nodiscard]] Matrix<Scalar> transposed(const Matrix<Scalar>& a) {
+  Matrix<Scalar> t(a.columns(), a.rows());
+  for (int c = 0; c < t.columns(); ++c) {
+    for (int r = 0; r < t.rows(); ++r) t(r, c) = a(c, r);
+  }
+  return t;
+}
 /// A x for a column x.
 template <class Scalar>
 [[nodiscard]] std::vector<Scalar> operator*(const Matrix<Scalar>& a, const std::vector<Scalar>& x) {

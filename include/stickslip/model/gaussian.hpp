@@ -1,9 +1,6 @@
 #pragma once
 /// Stationary Gaussian noise with a rational spectrum, of continuous paths.
 
-#include <map>
-#include <memory>
-#include <utility>
 #include <vector>
 
 #include "stickslip/linalg/dense.hpp"
@@ -32,7 +29,7 @@ struct CovarianceTerm {
 /// A is the continued fraction of the Laplace transform of the covariance, C(t)/C(0) = e_1^T
 /// exp(-A t) e_1, by two-sided Lanczos: tridiagonal, so that A = (1/tau) for an
 /// Ornstein-Uhlenbeck process and ((decay, -frequency), (frequency, decay)) for a narrow band.
-/// Immutable but for a store of projections; local.
+/// Local.
 class GaussianNoise final : public Projector {
  public:
   /// Throws UnfitTable, with the term in row(), where the terms are no covariance, or where paths
@@ -48,6 +45,10 @@ class GaussianNoise final : public Projector {
     return model::power_spectral_density(terms_, omega);
   }
 
+  /// Whether the nodes of an order are at most 6000.
+  [[nodiscard]] bool fits(const Thresholds& thresholds, int order) const override;
+
+ private:
   /// The generator on nodes. Along the force: continuous piecewise polynomials on elements that
   /// shrink towards `balance`, at the nodes of Gauss-Lobatto rules for the normal density.
   /// Across: Hermite polynomials up to a total degree, by their values at as many points. With the
@@ -55,13 +56,8 @@ class GaussianNoise final : public Projector {
   /// zero and the weights of the nodes are stationary, whatever the signs of the rates. Functions
   /// may jump at `start`, where a node stands on either side, tied together by a penalty: what
   /// sticks and what slides meet there. Degrees, modes and elements grow with `order` >= 2. O(nodes
-  /// * nodes of an element), kept for the next call. Throws UnfitTable unless fits().
-  [[nodiscard]] std::shared_ptr<const LevelTable> projected(const Thresholds& thresholds,
-                                                            int order) const override;
-  /// Whether the nodes of an order are at most 6000.
-  [[nodiscard]] bool fits(const Thresholds& thresholds, int order) const override;
-
- private:
+  /// * nodes of an element).
+  [[nodiscard]] Projection projection(const Thresholds& thresholds, int order) const override;
   void find_matrix();
   void require_spectrum();
 
@@ -69,7 +65,6 @@ class GaussianNoise final : public Projector {
   linalg::Matrix<double> a_;
   double deviation_ = 0;
   double peak_ = 0;  // of the power spectral density
-  mutable std::map<std::pair<Thresholds, int>, std::shared_ptr<const LevelTable>> made_;
 };
 
 }  // namespace stickslip::model

@@ -3,12 +3,14 @@
 
 #include <array>
 #include <cstddef>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 namespace stickslip::model {
@@ -83,6 +85,9 @@ struct Projection {
 struct Thresholds {
   std::array<double, 2> start, balance;
 
+  [[nodiscard]] bool alike_both_ways() const {
+    return start[0] == -start[1] && balance[0] == -balance[1];
+  }
   friend bool operator<(const Thresholds& a, const Thresholds& b) {
     return std::tie(a.start, a.balance) < std::tie(b.start, b.balance);
   }
@@ -90,18 +95,24 @@ struct Thresholds {
 
 class LevelTable;
 
-/// What is solved on nodes, more of them with each order.
+/// What is solved on nodes, more of them with each order. Immutable but for a store of tables;
+/// local.
 class Projector {
  public:
   virtual ~Projector() = default;
   /// The generator on nodes, for the thresholds of its scene; order >= 2. Kept for the next call.
   /// Throws UnfitTable unless fits().
-  [[nodiscard]] virtual std::shared_ptr<const LevelTable> projected(const Thresholds& thresholds,
-                                                                    int order) const = 0;
+  [[nodiscard]] std::shared_ptr<const LevelTable> projected(const Thresholds& thresholds,
+                                                            int order) const;
   /// Whether the nodes of an order are few enough.
   [[nodiscard]] virtual bool fits(const Thresholds& thresholds, int order) const = 0;
   /// Whether the noise is damped about as fast as it turns, which a narrow band is not.
   [[nodiscard]] virtual bool damped() const = 0;
+
+ private:
+  [[nodiscard]] virtual Projection projection(const Thresholds& thresholds, int order) const = 0;
+
+  mutable std::map<std::pair<Thresholds, int>, std::shared_ptr<const LevelTable>> made_;
 };
 
 /// A chain that reaches each of its levels from each other one, by jumps to the neighbours or,

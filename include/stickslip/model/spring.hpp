@@ -1,9 +1,7 @@
 #pragma once
 /// A body on a spring.
 
-#include <map>
 #include <memory>
-#include <utility>
 #include <vector>
 
 #include "stickslip/model/drag.hpp"
@@ -27,8 +25,7 @@ struct AlongForce;
 ///   C = (sigma^2/tau) d^2/df^2 - ((f + K p)/tau) d/df,   D = d/dp - K d/df,
 ///
 /// by continuous polynomials along f as in GaussianNoise, with even weights. Positions end where
-/// the energy of a body driven by the noise has fallen off. Source: docs/spring.md. Immutable but
-/// for a store of projections; local.
+/// the energy of a body driven by the noise has fallen off. Source: docs/spring.md. Local.
 class Spring final : public Projector {
  public:
   /// An Ornstein-Uhlenbeck process.
@@ -46,8 +43,6 @@ class Spring final : public Projector {
   Spring(Body body, const NoiseChain& chain);
 
   [[nodiscard]] double stiffness() const { return body_.stiffness; }
-  [[nodiscard]] std::shared_ptr<const LevelTable> projected(const Thresholds& thresholds,
-                                                            int order) const override;
   [[nodiscard]] bool fits(const Thresholds& thresholds, int order) const override;
   [[nodiscard]] bool damped() const override { return false; }
 
@@ -58,6 +53,7 @@ class Spring final : public Projector {
     double position, velocity, force;
     double drag;  // all of it, per velocity
   };
+  [[nodiscard]] Projection projection(const Thresholds& thresholds, int order) const override;
   [[nodiscard]] Scales find_scales() const;
   [[nodiscard]] double reach(int order) const;
   [[nodiscard]] Projection of_coloured(const Thresholds& thresholds, int order) const;
@@ -70,7 +66,6 @@ class Spring final : public Projector {
   Coloured noise_;
   std::shared_ptr<const NoiseChain> chain_;
   Scales scales_;
-  mutable std::map<std::pair<Thresholds, int>, std::shared_ptr<const LevelTable>> made_;
 };
 
 }  // namespace stickslip::model
