@@ -103,6 +103,19 @@ class Noises(Case):
         at_balance = ("-noise", "ou", "-delta", "0", "-quantities", "phase_durations", "-time", "1")
         self.refuse(*at_balance, message=("mu_d = mu_s", "infinitely often"))
 
+    # By -delta 1/16, 1/32 and 1/64, extrapolated twice: results are of first order in the step.
+    LIMITS = (
+        (("passage_transform", "-velocity", "0.3", "-lambda", "1"), "F_passage(0.3)", 0.270516, 2e-6),
+        (("passage_distribution", "-velocity", "0.3", "-time", "1"), "cdf_passage(0.3)", 0.327744, 2e-5),
+        (("displacement_transform", "-wavenumber", "2", "-time", "3"), "displacement_cosine(3)", 0.445180, 2e-5))
+
+    def test_passages_and_displacements_of_gaussian_noise(self):
+        for quantity, key, right, error in self.LIMITS:
+            found = self.summary("-noise", "ou", "-delta", "0", "-mu_d", "0.5", "-accuracy", "1e-3", "-start", "rest",
+                                 "-quantities", *quantity)["results"][key]
+            self.assertLess(abs(found["value"][0] - right), found["error"][0] + error, key)
+            self.assertLess(found["error"][0], 1e-3, key)
+
     def test_gaussian_noises_by_name(self):
         ground = self.summary(*self.GROUND, "-accuracy", "1e-3")
         for key, value in {"P_stick": 0.057558, "mean_slide": 0.330008, "E_V2": 0.0337518, "E_XV": 0.1310128}.items():

@@ -143,8 +143,10 @@ def transforms(ask, options, random):
     z = 10 ** random.uniform(-1, 1)
     f = ask("sticking,laplace,resolvent", observable="y==0", **{"lambda": (0.0, z)})
     yield "F_slide(0)", f["F_slide"][0], 1
-    yield "h+ + h-(0)", f["h_plus"][0] + f["h_minus"][0], 1
-    yield "h+ + h- + lambda w(1)", f["h_plus"][1] + f["h_minus"][1] + z * f["w_one"][1], 1
+    begin = "" if "h_plus" in f.values else "_from_minus"  # no slide may begin upwards
+    h = f["h_plus" + begin] + f["h_minus" + begin]
+    yield "h+ + h-(0)", h[0], 1
+    yield "h+ + h- + lambda w(1)", h[1] + z * f["w_one" + begin][1], 1
 
 
 def first_passages(ask, options, random):

@@ -98,6 +98,8 @@ def mirror(options, random):
 
     def back(key, value, answer):
         exchanged = EXCHANGED.get(key)
+        if exchanged not in answer.values and key in ("u(f)", "mu(f)"):  # symmetric: u(s+) + u(s-) = 2 pi/lambda
+            return None if key == "u(f)" else (key, -value)
         key = exchanged if exchanged in answer.values else key
         if key.startswith("entry_law"):
             return key, value[::-1]

@@ -72,7 +72,6 @@ inline constexpr Entry kDisplacementTransform{
     .options = "time, start",
     .arguments = kDisplacementTransformArguments,
     .rows = kDisplacementTransformRows,
-    .of_levels = true,
     .of_travel = true,
     .weighs_tail = true,
     .both_branches = true};
@@ -144,7 +143,6 @@ inline constexpr Entry kDisplacementDistribution{
     .arguments = kDisplacementDistributionArguments,
     .rows = kDisplacementDistributionRows,
     .usual_accuracy = 0.01,
-    .of_levels = true,
     .of_travel = true,
     .weighs_tail = true,
     .both_branches = true};

@@ -131,7 +131,6 @@ inline constexpr Entry kPassageTimeTransform{
     .routes = {Route::excursion, Route::monte_carlo},
     .options = "lambda, velocity, start, passage",
     .rows = kPassageTransformRows,
-    .of_levels = true,
     .weighs_tail = true,
     .both_branches = true};
 inline constexpr Entry kPassageTimeDistribution{
@@ -145,7 +144,6 @@ inline constexpr Entry kPassageTimeDistribution{
     .rows = kPassageDistributionRows,
     .degrees_besides = 3,
     .usual_accuracy = 1e-4,
-    .of_levels = true,
     .weighs_tail = true,
     .both_branches = true};
 
