@@ -439,7 +439,7 @@ void choose_step(const Settings& settings, Request& request) {
 void add_notes(Request& request) {
   const bool follows =
       request.question.wants(cases::kGivenForce.quantity) && request.question.start.v == 0;
-  for (const auto& said : {effects::step_warning(request.scene), effects::noise_note(request.scene),
+  for (const auto& said : {effects::step_warning(request.scene),
                            follows ? effects::force_note(request.scene) : std::string()}) {
     if (!said.empty()) request.warnings.push_back(said);
   }
@@ -450,9 +450,7 @@ std::string used_text(const Settings& settings, const Request& request, const Op
   const std::string& name = option.name;
   if (effects::is_idle(request.scene, name)) return "";
   if (name == "delta" && settings.has("delta_per_mu_s")) return "mu_s/delta_per_mu_s";
-  // With a radius of a lattice, the same options would be another noise.
   if (request.scene.noise.gaussian && name == "delta") return "0";
-  if (request.scene.noise.gaussian && name == "noise_radius") return "";
   const bool chosen = !settings.has(name) && !option.initial.empty();
   const auto given_or = [&](double used) {
     return chosen && used != settings.real(name) ? fmt::format("{}", used) : settings.text(name);

@@ -117,7 +117,7 @@ class Rules {
     if (r_.scene.projector() == nullptr || !settings_.sound()) return;
     const std::string option =
         r_.scene.spring ? "-spring_stiffness" : "-noise " + r_.scene.noise.name;
-    std::string way = "take -noise ou";
+    std::string way = "take a chain, which lattice(delta) of such a noise makes in Python";
     if (r_.scene.spring) {
       way = "leave -spring_stiffness out";
     } else if (effects::noises().knows(r_.scene, "delta")) {

@@ -190,14 +190,13 @@ Series of_delta(const Context& context, double offset, const std::string& name) 
   const auto& friction = context.given.scene.friction;
   const double mu_s = friction.mu_s;
   const double first = std::max(1.0, std::round(mu_s / context.given.scene.delta - offset));
-  // A lattice in the plane has states in proportion to the square of a step, and times to their
-  // square again.
-  const bool plane = !context.given.scene.meant().noise.neighbours_only();
+  // Chains that jump further, such as sums, have more states with each step.
+  const bool wide = !context.given.scene.meant().noise.neighbours_only();
   Series series{"delta", " " + name, ", mu_s " + name,
-                std::min(context.given.question.accuracy, plane ? 1e-6 : 1e-9)};
-  const int steps = context.study.steps.value_or(plane ? 4 : 8);
+                std::min(context.given.question.accuracy, wide ? 1e-6 : 1e-9)};
+  const int steps = context.study.steps.value_or(wide ? 4 : 8);
   for (int n = 0; n < steps; ++n) {
-    series.values.push_back(mu_s / ((plane ? first + n : first * (1 << n)) + offset));
+    series.values.push_back(mu_s / ((wide ? first + n : first * (1 << n)) + offset));
     series.cases.push_back(with_delta(context.given, series.values.back()));
   }
   const bool grazing = friction.mu_d == mu_s;

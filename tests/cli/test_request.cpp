@@ -273,8 +273,8 @@ TEST_CASE("request: dynamic friction that is not given stays below static fricti
 TEST_CASE("request: every refusal names option, value, range and a way out") {
   const std::vector<Refusal> refusals{
       {"-delta -0.5", {"-delta = -0.5", "[0, inf)", "0.125"}},
-      {"-noise filtered -ground_frequency 15 -ground_damping 0.02 -ground_intensity 0.05 -delta 1",
-       {"-delta = 1", "at least two states", "a smaller -delta"}},
+      {"-noise filtered -ground_frequency 15 -ground_damping 0.6 -delta 1",
+       {"-delta = 1", "filtered has none", "leave it out"}},
       {"-tau nan", {"-tau = nan", "(0, inf)"}},
       {"-tau 1e400", {"-tau = 1e400", "(0, inf)"}},
       {"-mu_s 1 -mu_d 2", {"-mu_d = 2", "[0, mu_s]", "mu_s = 1"}},

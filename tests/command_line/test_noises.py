@@ -121,8 +121,6 @@ class Noises(Case):
         for key, value in {"P_stick": 0.057558, "mean_slide": 0.330008, "E_V2": 0.0337518, "E_XV": 0.1310128}.items():
             found = ground["results"][key]
             self.assertLess(abs(found["value"] - value), found["error"] + 4e-5 * value, key)
-        self.assertEqual(ground["provenance"]["options"]["delta"], "0")
-        self.assertEqual(ground["provenance"]["options"]["noise_radius"], "")
         loose = ("-accuracy", "0.03", "-quantities", "sticking,moments,noise_spectrum", "-omega", "0,1")
         for terms, named in (("1,0.5,1", self.BAND), ("1.44,2", ("-tau", "0.5", "-noise_deviation", "1.2", "-delta", "0")),
                              ("1,1; 0.64,5", ("-noise", "gaussian+ou", "-covariance", "1,1", "-tau", "0.2",
@@ -134,17 +132,17 @@ class Noises(Case):
                 for found, right in pairs:
                     self.assert_close(found, right, 1e-6)
 
-    def test_gaussian_noises_with_a_step_are_chains(self):
-        chain = self.summary(*self.BAND, "-delta", "1", "-quantities", "sticking")
-        self.assertEqual(chain["scene"]["noise_radius"], 4)
+    def test_gaussian_noises_have_no_step(self):
+        self.refuse(*self.BAND, "-delta", "1", message=("-delta = 1", "a step between levels", "lattice(delta)"))
         self.refuse("-delta", "0", "-noise_levels", "5", message=("-noise_levels = 5: counts levels", "leave it out"))
         self.refuse("-delta", "0", "-study", "delta", message=("needs a noise of levels", "such as 0.125"))
         smooth = (*self.BAND[:-3], "0.001", "-mu_d", "0.5")
-        self.refuse(*smooth, message=("-band_width = 0.001: the covariance falls", "too smooth", "-delta, such as 0.4"))
-        self.run_ok(*smooth, "-delta", "0.4", "-plan")
+        self.refuse(*smooth, message=("-band_width = 0.001: the covariance falls", "too smooth", "take a larger"))
         both = ("-noise", "narrow_band+telegraph", *self.BAND[2:], "-telegraph_amplitude", "1", "-telegraph_rate", "1")
-        self.refuse(*both, message=("adds chains, and narrow_band noise is none", "-delta, such as 0.4"))
-        self.run_ok(*both, "-delta", "0.4", "-plan")
+        self.refuse(*both, message=("adds chains, and narrow_band noise is none", "lattice(delta)"))
+        with_ou = ("-noise", "gaussian+ou", "-mu_d", "0.5")
+        self.refuse(*with_ou, message=("adds chains, and gaussian noise is none", "give -delta 0"))
+        self.run_ok(*with_ou, "-delta", "0", "-plan")
 
     def test_the_density_of_a_noise_without_levels(self):
         summary = self.summary(*self.BAND, "-quantities", "sticking,moments,density", "-accuracy", "0.01", "-output", "d.h5")

@@ -50,56 +50,7 @@ const Given kPulses{
 
 }  // namespace
 
-TEST_CASE("narrow band: a lattice in the plane, central differences where rates are positive") {
-  const auto scene = scene_of(with(kBand, {{"delta", "0.5"}, {"noise_radius", "3.5"}}));
-  std::vector<double> x;
-  std::map<std::pair<int, int>, std::size_t> number;
-  for (int i = -7; i <= 7; ++i) {
-    for (int j = -7; j <= 7; ++j) {
-      if (i * i + j * j > 49) continue;
-      number[{i, j}] = x.size();
-      x.push_back(i / 2.0);
-    }
-  }
-  std::vector<model::Transition> jumps;
-  for (const auto& [point, from] : number) {
-    const auto [i, j] = point;
-    const double a = i / 2.0, b = j / 2.0;
-    for (int along : {0, 1}) {
-      const double drift = along == 0 ? -0.5 * a - 2 * b : 2 * a - 0.5 * b;
-      for (int sign : {1, -1}) {
-        const auto to = number.find(along == 0 ? std::pair(i + sign, j) : std::pair(i, j + sign));
-        const double rate = 2 + sign * drift, other = 2 - sign * drift;
-        if (to == number.end() || rate <= 0) continue;
-        jumps.push_back({from, to->second, other >= 0 ? rate : 2 * std::abs(drift)});
-      }
-    }
-  }
-  REQUIRE(x.size() == 149);
-  CHECK(difference(table_of(scene), {x, jumps}) < 1e-12);
-  CHECK(table_of(scene).even());
-}
-
-TEST_CASE("noises of the plane: variance and intensity tend to those of the process") {
-  for (const auto& [given, intensity] :
-       {std::pair(kBand, 0.5 / (0.25 + 4)), std::pair(kGround, 2 * 0.5 / (3 * 2.0))}) {
-    double before = 0;
-    for (const char* step : {"0.35", "0.2"}) {
-      const auto scene =
-          scene_of(with(given, {{"delta", step}, {"noise_radius", "5"}, {"noise_deviation", "1"}}));
-      const auto& table = table_of(scene);
-      const double error =
-          std::max(std::abs(table.variance() - 1), std::abs(table.intensity() / intensity - 1));
-      INFO(given.at("noise") << " " << step << ": " << error);
-      CHECK(error < 0.1);
-      // Of second order but where jumps go along the drift alone; 4e-5 are beyond the radius.
-      if (before > 0) CHECK(error < std::max(0.6 * before, 1e-4));
-      before = error;
-    }
-  }
-}
-
-TEST_CASE("noises of the plane: without a step they are Gaussian noise of continuous paths") {
+TEST_CASE("narrow band and filtered noise are Gaussian noise of continuous paths") {
   for (const auto& [given, terms] :
        {std::pair(kBand, model::CovarianceTerm{1, 0.5, 2}),
         std::pair(kGround, model::CovarianceTerm{1, 1.5, 3 * std::sqrt(0.75), 0}),
@@ -117,37 +68,17 @@ TEST_CASE("noises of the plane: without a step they are Gaussian noise of contin
       CHECK(near(scene.noise.target(omega), scene.noise.gaussian->power_spectral_density(omega),
                  1e-12));
     }
-    const auto lattice = scene_of(with(given, {{"delta", "0.5"}}));
-    CHECK(!lattice.noise.gaussian);
-    CHECK(near(lattice.noise.target(1), scene.noise.target(1), 1e-12));
   }
+  CHECK_THAT(said_of(with(kBand, {{"delta", "0.5"}})),
+             Catch::Contains("a step between levels, and -noise narrow_band has none"));
 }
 
 TEST_CASE("filtered noise: the intensity of what is filtered gives the deviation") {
-  const auto given = with(kGround, {{"ground_intensity", "0.3"}, {"delta", "1"}});
+  const auto given = with(kGround, {{"ground_intensity", "0.3"}});
   const auto scene = scene_of(given);
   CHECK(near(*scene.noise.deviation, std::sqrt(0.3 * 3 * 2), 1e-12));
   CHECK_THAT(said_of(with(given, {{"noise_deviation", "1"}})),
              Catch::Contains("fixes the deviation, and so does -noise_deviation"));
-  CHECK_THAT(effects::noise_note(scene), Catch::Contains("in the place of 1.34"));
-}
-
-TEST_CASE("noises of the plane: unless given, steps keep mu_s halfway between two levels") {
-  for (const char* mu_s : {"0.55", "1", "3"}) {
-    const auto scene = scene_of(with(kBand, {{"mu_s", mu_s}}));
-    const double places = scene.friction.mu_s / scene.delta;
-    CHECK(near(places - std::floor(places), 0.5, 1e-12));
-    CHECK(std::abs(scene.delta - 0.5) < 0.15);
-  }
-  CHECK(scene_of(with(kBand, {{"mu_s", "0.1"}, {"mu_d", "0.1"}})).delta == 0.5);
-}
-
-TEST_CASE("noises of the plane: another step makes another lattice") {
-  auto scene = scene_of(with(kBand, {{"delta", "0.5"}}));
-  scene.delta = 0.4;
-  effects::make_noise_levels(scene);
-  CHECK(difference(table_of(scene), table_of(scene_of(with(kBand, {{"delta", "0.4"}})))) == 0);
-  CHECK_THAT(said_of(with(kBand, {{"delta", "0.001"}})), Catch::Contains("at most 4000"));
 }
 
 TEST_CASE("periodic noise: phases follow one another, with the force of each") {
@@ -250,14 +181,10 @@ TEST_CASE("sums of noises: states are pairs, moments add up, options go to their
   CHECK(effects::noises().knows(scene, "delta"));
   CHECK(effects::noises().knows(scene, "period"));
   CHECK(!effects::noises().knows(scene, "pulse_rate"));
-  const auto band = scene_of(with(kBand, {{"noise", "narrow_band+telegraph"},
-                                          {"telegraph_amplitude", "0.5"},
-                                          {"telegraph_rate", "1"},
-                                          {"delta", "0.5"}}));
+  const auto band = scene_of(with(kBand, {{"noise", "narrow_band+gaussian"}}));
   std::map<std::string, int> stated;
   for (const auto& each : effects::parameters_of(band)) ++stated[each.first];
-  for (const char* name : {"band_frequency", "band_width", "noise_radius", "noise_deviation",
-                           "delta", "telegraph_amplitude", "telegraph_rate"}) {
+  for (const char* name : {"band_frequency", "band_width", "noise_deviation", "covariance"}) {
     INFO(name);
     CHECK(stated[name] == 1);
   }

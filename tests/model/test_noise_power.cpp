@@ -42,24 +42,6 @@ TEST_CASE("noise power: chains with jumps of any length") {
   CHECK(relative_difference(sum / 2, table->variance()) < 1e-5);
 }
 
-TEST_CASE("noise power: lattices in the plane come close to what they stand for") {
-  for (const auto& [noise, first, second] :
-       {std::tuple("narrow_band", "band_frequency", "band_width"),
-        std::tuple("filtered", "ground_frequency", "ground_damping")}) {
-    const auto scene = scene_of({{"noise", noise},
-                                 {first, "2"},
-                                 {second, "0.6"},
-                                 {"noise_deviation", "1.5"},
-                                 {"delta", "0.375"},
-                                 {"mu_d", "0.5"}});
-    for (double omega : {0.0, 1.0, 2.0, 4.0}) {
-      INFO(noise << " " << omega);
-      CHECK(relative_difference(model::power_spectral_density(scene.meant().noise, omega),
-                                scene.noise.target(omega)) < 0.06);
-    }
-  }
-}
-
 TEST_CASE("noise power: that of a sum is the sum, where all of it is known") {
   const auto scene_with = [](const char* noise) {
     return scene_of({{"noise", noise},

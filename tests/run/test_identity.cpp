@@ -85,15 +85,12 @@ std::vector<Options> command_lines(const NoiseFiles& files) {
       {{"noise", "chain"}, {"noise_states", files.states}, {"noise_rates", files.rates}});
   lines[6].insert({{"noise", "narrow_band"},
                    {"band_frequency", "2"},
-                   {"band_width", "0.6"},
-                   {"noise_radius", "3"},
-                   {"delta", "1"}});
+                   {"band_width", "0.6"}});
   lines[7].insert({{"noise", "filtered"},
                    {"ground_frequency", "2"},
                    {"ground_damping", "0.5"},
-                   {"ground_intensity", "1"},
-                   {"noise_radius", "3"},
-                   {"delta", "1"}});
+                   {"ground_intensity", "1"}});
+  for (int continuous : {6, 7}) lines[continuous]["quantities"] = "sticking,averages,slip";
   lines[8].insert({{"noise", "periodic"}, {"periodic_amplitude", "2"}, {"period", "4"}});
   lines[9].insert({{"noise", "pulses"},
                    {"pulse_height", "2"},

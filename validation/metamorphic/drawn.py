@@ -101,22 +101,15 @@ NAMED = {
     "pulses": lambda random: {"pulse_height": random.uniform(0.8, 2.5), "pulse_rate": log_uniform(random, 0.1, 1),
                               random.choice(("pulse_duration", "pulse_decay")): log_uniform(random, 0.2, 1),
                               "pulse_steps": random.randint(2, 4), "pulse_sign": random.choice(("both", "up", "down"))},
-    "ou": lambda random: {"tau": log_uniform(random, 0.3, 3), "delta": 0.5, "noise_deviation": 0.75, "noise_levels": 3},
-    "narrow_band": lambda random: {"band_frequency": log_uniform(random, 0.5, 4), "band_width": random.uniform(0.2, 1)},
-    "filtered": lambda random: {"ground_frequency": log_uniform(random, 1, 8), "ground_damping": random.uniform(0.3, 0.9)}}
-LATTICE = {"noise_deviation": 1.0, "delta": 0.75, "noise_radius": 2.5}
+    "ou": lambda random: {"tau": log_uniform(random, 0.3, 3), "delta": 0.5, "noise_deviation": 0.75, "noise_levels": 3}}
 
 
 def named(random):
     """A noise by its name, or the sum of two."""
     words = random.sample(sorted(NAMED), random.choice((1, 1, 2)))
-    if {"narrow_band", "filtered"} & set(words):
-        words = words[:1] if words[0] in ("narrow_band", "filtered") else words[1:]
     options = friction_and_drag(random) | {"noise": "+".join(words)}
     for word in words:
         options |= NAMED[word](random)
-    if words[0] in ("narrow_band", "filtered"):
-        options |= LATTICE
     if "pulse_decay" not in options:
         options.pop("pulse_steps", 0)
     return options

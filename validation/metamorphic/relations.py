@@ -49,9 +49,6 @@ def states(options):
         return noise.telegraph(options["telegraph_amplitude"], options["telegraph_rate"])
     if word == "periodic":
         return noise.periodic(options["periodic_amplitude"], options["period"], options["period_phases"])
-    if word == "narrow_band":
-        return noise.narrow_band(options["noise_deviation"], options["band_width"], options["band_frequency"],
-                                 options["delta"], options["noise_radius"])
     return None
 
 

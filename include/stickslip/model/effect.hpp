@@ -166,8 +166,6 @@ struct Effect {
   std::vector<model::Derivative> derivatives = {};
   /// Of a noise: how to make it stronger, where it never moves a body.
   std::string (*stronger)(const model::Scene&) = nullptr;
-  /// Of a noise: how its chain differs from the process that it stands for; may be empty.
-  std::string (*note)(const model::Scene&) = nullptr;
 
   [[nodiscard]] bool knows(std::string_view option) const;
 };
@@ -243,9 +241,6 @@ enum class Drive { noise, given_force, both };
 /// The parameters of the model; v_max and the noise levels may stay open. What is wrong with them,
 /// each by itself or together, is refused. What does not drive is not read.
 [[nodiscard]] model::Scene read_scene(Given& given, Drive drive = Drive::noise);
-
-/// How the chain of a scene's noise differs from the noise that is meant; may be empty.
-[[nodiscard]] std::string noise_note(const model::Scene& scene);
 
 /// What to say of a given force under which friction holds the body all the time; empty where it
 /// moves, and without such a force.

@@ -534,11 +534,6 @@ class SceneReader {
 
 model::Scene read_scene(Given& given, Drive drive) { return SceneReader(given, drive).read(); }
 
-std::string noise_note(const model::Scene& scene) {
-  const auto note = noises().in(scene).note;
-  return note != nullptr ? note(scene) : "";
-}
-
 std::string step_warning(const model::Scene& scene) {
   std::vector<std::string> acting;
   for (bool backwards : {false, true}) {

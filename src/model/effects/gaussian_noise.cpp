@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cmath>
+#include <initializer_list>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -82,6 +84,14 @@ void read_gaussian(Given& given, model::Scene& scene) {
 void make_continuous(Given& given, model::Scene& scene,
                      const std::vector<model::CovarianceTerm>& terms, const char* option,
                      const std::string& fix) {
+  if (given.has(kDelta) && given.real(kDelta) > 0) {
+    return given.refuse(kDelta,
+                        fmt::format("is a step between levels, and -noise {} has none: its paths "
+                                    "are continuous",
+                                    scene.noise.name),
+                        "leave it out, or take 0 where a sum has ou; in Python lattice(delta) of "
+                        "such a noise makes a chain of levels");
+  }
   try {
     scene.noise.gaussian = std::make_shared<const model::GaussianNoise>(terms);
   } catch (const model::UnfitTable& unfit) {
@@ -125,5 +135,136 @@ const Effect kGaussianNoise{
     .stronger = [](const model::Scene&) {
       return std::string("larger amplitudes in -covariance");
     }};
+
+namespace {
+
+// Gaussian noises by name, of one term.
+
+// Reads the options of a term, the last of which damps it, and -noise_deviation if it is given.
+void make_named(Given& given, model::Scene& scene, std::initializer_list<const char*> own,
+                double deviation, model::CovarianceTerm (*term)(const model::Scene&)) {
+  scene.noise.deviation = given.has(kDeviation) ? given.real(kDeviation) : deviation;
+  for (const char* name : own) scene.own.emplace_back(name, given.real(name));
+  if (!given.sound()) return;
+  const char* damping = own.end()[-1];
+  make_continuous(given, scene, {term(scene)}, damping, fmt::format("take a larger -{}", damping));
+}
+
+double variance_of(const model::Scene& scene) { return std::pow(*scene.noise.deviation, 2); }
+
+model::Parameters deviation_of(const model::Scene& scene) {
+  return {{kDeviation, *scene.noise.deviation}};
+}
+
+std::string larger_deviation(const model::Scene&) {
+  return fmt::format("a larger -{}", kDeviation);
+}
+
+constexpr const char *kGroundFrequency = "ground_frequency", *kGroundDamping = "ground_damping",
+                     *kGroundIntensity = "ground_intensity";
+
+// White noise of spectrum S at the foot of an oscillator, q'' + 2 zeta w q' + w^2 q = -noise, gives
+// its mass the acceleration X = 2 zeta w q' + w^2 q, of which the spectrum is
+//
+//   S (1 + (2 zeta r)^2)/((1 - r^2)^2 + (2 zeta r)^2),  r = omega/w,
+//
+// and the covariance deviation^2 exp(-zeta w t) (cos(nu t) + k sin(nu t)), nu = w (1 - zeta^2)^1/2.
+model::CovarianceTerm ground_of(const model::Scene& scene) {
+  const double w = own_number(scene, kGroundFrequency), zeta = own_number(scene, kGroundDamping),
+               turn = std::sqrt((1 - zeta) * (1 + zeta)), square = 4 * zeta * zeta;
+  return {variance_of(scene), zeta * w, turn * w, zeta * (1 - square) / (turn * (1 + square))};
+}
+
+void read_ground(Given& given, model::Scene& scene) {
+  if (given.has(kGroundIntensity) && given.has(kDeviation)) {
+    return given.refuse(kGroundIntensity,
+                        fmt::format("fixes the deviation, and so does -{}", kDeviation),
+                        "leave one of them out");
+  }
+  const double w = given.real(kGroundFrequency), zeta = given.real(kGroundDamping);
+  double deviation = 1;
+  if (given.has(kGroundIntensity)) {
+    const double intensity = given.real(kGroundIntensity);
+    scene.own.emplace_back(kGroundIntensity, intensity);
+    deviation = std::sqrt(intensity * w * (1 + 4 * zeta * zeta) / (2 * zeta));
+  }
+  make_named(given, scene, {kGroundFrequency, kGroundDamping}, deviation, ground_of);
+}
+
+}  // namespace
+
+const Effect kFilteredNoise{
+    .word = "filtered",
+    .sentence = "white noise through a damped oscillator (Kanai and Tajimi)",
+    .others = {"kanai_tajimi", "kanai-tajimi", "tajimi", "ground", "ground_motion", "earthquake",
+               "seismic"},
+    .parameters =
+        {{Option::real(kGroundFrequency, "1/time", "", Range::positive(),
+                       "angular frequency w of the oscillator of -noise filtered",
+                       "take for example 15.6",
+                       {.symbol = "\\omega_g",
+                        .label = "frequency of the ground",
+                        .slider = Slider{.low = 0.2, .high = 20, .start = 2, .logarithmic = true}}),
+          true, "15.6"},
+         {Option::real(kGroundDamping, "", "", {0, 1, false, false},
+                       "damping ratio zeta of the oscillator of -noise filtered",
+                       "take for example 0.6",
+                       {.symbol = "\\zeta_g",
+                        .label = "damping of the ground",
+                        .slider = Slider{.low = 0.2, .high = 0.9, .start = 0.6}}),
+          true, "0.6"},
+         {Option::real(kGroundIntensity, "force^2 time", "", Range::positive(),
+                       "intensity D of the white noise that -noise filtered passes on: half the "
+                       "integral of its covariance, pi times its two-sided spectrum per angular "
+                       "frequency. X has the variance D w (1 + 4 zeta^2)/(2 zeta)",
+                       fmt::format("or give -{} in its place", kDeviation),
+                       {.symbol = "D", .label = "intensity of the ground"}),
+          true},
+         {deviation_option()}},
+    .read = read_ground,
+    .complete = complete_continuous,
+    .values = deviation_of,
+    .stronger = larger_deviation};
+
+namespace {
+
+constexpr const char *kBandFrequency = "band_frequency", *kBandWidth = "band_width";
+
+model::CovarianceTerm band_of(const model::Scene& scene) {
+  return {variance_of(scene), own_number(scene, kBandWidth), own_number(scene, kBandFrequency)};
+}
+
+void read_band(Given& given, model::Scene& scene) {
+  make_named(given, scene, {kBandFrequency, kBandWidth}, 1, band_of);
+}
+
+}  // namespace
+
+const Effect kNarrowBand{
+    .word = "narrow_band",
+    .sentence = "Gaussian noise of covariance deviation^2 exp(-gamma t) cos(omega t)",
+    .others = {"narrowband", "band", "harmonic", "waves"},
+    .parameters =
+        {{Option::real(kBandFrequency, "1/time", "", Range::positive(),
+                       "angular frequency omega of -noise narrow_band, at the middle of its band",
+                       "take for example 2",
+                       {.symbol = "\\omega_0",
+                        .label = "frequency of the band",
+                        .slider = Slider{.low = 0.2, .high = 10, .start = 2, .logarithmic = true}}),
+          true, "2"},
+         {Option::real(
+              kBandWidth, "1/time", "", Range::positive(),
+              "half width gamma of the band: where the spectrum of -noise narrow_band has fallen "
+              "to a half. Its covariance decays at this rate",
+              "take for example 0.5",
+              {.symbol = "\\gamma",
+               .label = "half width of the band",
+               .slider = Slider{.low = 0.1, .high = 5, .start = 0.5, .logarithmic = true}}),
+          true, "0.5"},
+         {deviation_option()}},
+    .read = read_band,
+    .complete = complete_continuous,
+    .values = deviation_of,
+    .stronger = larger_deviation};
 
 }  // namespace stickslip::effects

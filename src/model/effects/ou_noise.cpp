@@ -162,8 +162,7 @@ Option delta_option() {
   return Option::real(
       kDelta, "force", "0.125", Range::not_negative(),
       "step between neighbouring noise levels; 0: none, the Gaussian noise of continuous paths. "
-      "Unless given, 0 with -noise narrow_band and filtered, and with -study tau half the "
-      "deviation",
+      "Unless given, half the deviation with -study tau",
       "take for example 0.125, or 0",
       {.symbol = "\\delta", .label = "noise step", .others = {"dx", "step", "noise_step"}});
 }

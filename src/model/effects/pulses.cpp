@@ -309,11 +309,12 @@ void read_sum(Given& given, model::Scene& scene) {
   if (continuous.size() == words.size()) {
     return make_continuous(given, scene, terms, "noise", "take fewer parts");
   }
+  const bool by_steps =
+      std::ranges::any_of(words, [](const auto& word) { return noises().of(word).knows(kDelta); });
   for (const auto& word : continuous) {
     given.refuse("noise", fmt::format("adds chains, and {} noise is none", word),
-                 noises().of(word).knows(kDelta)
-                     ? fmt::format("give -delta, such as {:.3g}, with which it is one", scene.delta)
-                     : "give all Gaussian parts as terms of -covariance, or take -noise ou");
+                 by_steps ? "give -delta 0, with which ou is Gaussian noise as well"
+                          : "add up in Python, where lattice(delta) makes a chain of such a noise");
   }
   const bool known = std::all_of(targets.begin(), targets.end(), [](const auto& f) { return !!f; });
   scene.noise.target = {};
@@ -376,18 +377,6 @@ std::string heading_of_sum(const model::Scene& scene) {
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 
-std::string note_of_sum(const model::Scene& scene) {
-  if (scene.noise.gaussian) return "";
-  std::vector<std::string> notes;
-  for (const auto& word : words_of(scene)) {
-    const auto note = noises().of(word).note;
-    if (note == nullptr) continue;
-    const std::string said = note(made_part(scene, word));
-    if (!said.empty()) notes.push_back(said);
-  }
-  return fmt::format("{}", fmt::join(notes, "; "));
-}
-
 }  // namespace
 
 const Effect kNoiseSum{.word = "+",
@@ -395,7 +384,6 @@ const Effect kNoiseSum{.word = "+",
                        .read = read_sum,
                        .complete = complete_sum,
                        .levels = levels_of_sum,
-                       .heading = heading_of_sum,
-                       .note = note_of_sum};
+                       .heading = heading_of_sum};
 
 }  // namespace stickslip::effects
