@@ -34,6 +34,8 @@ class Density:
     states
         Number of the state of each row, as the noise numbers them: of `-noise chain`, or the phase of `-noise
         periodic`. Several states may have the same x.
+    position
+        With a spring the arrays p, pdf, atom and marginal_p of `by_position()`, by evenly spaced positions; else empty.
     """
 
     x: "Array"
@@ -46,6 +48,7 @@ class Density:
     cells: "Array"
     error: float
     states: "Array"
+    position: "dict[str, Array]" = dataclasses.field(default_factory=dict)
 
     def by_force(self) -> "Density":
         """The same with one row for each force, the sum of those of all states that have it."""
@@ -57,6 +60,15 @@ class Density:
         for name, sums in rows.items():
             numpy.add.at(sums, place, getattr(self, name))
         return dataclasses.replace(self, x=x, states=numpy.arange(len(x)), **rows)
+
+    def by_position(self) -> "Density":
+        """The distribution of (P, V) of a body on a spring, as one of (X, V): rows are the positions `x` [length], evenly
+        spaced, with the probabilities of the steps around them."""
+        if not self.position:
+            raise ValueError("by_position: the density has no positions; they come with -spring_stiffness")
+        p, pdf, atom, marginal = (self.position[name] for name in ("p", "pdf", "atom", "marginal_p"))
+        return dataclasses.replace(self, x=p, values=pdf, at_rest=atom, marginal_x=marginal, states=numpy.arange(len(p)),
+                                   position={})
 
     @property
     def mass_at_rest(self) -> float:

@@ -405,7 +405,8 @@ def fields(file: "h5py.File") -> dict[str, Any]:
         found["density"] = Density(
             *(data[part] for part in ("x", "v", "pdf", "atom", "marginal_x", "marginal_v", "weights", "cells")),
             float(file["density"].attrs.get("error_of_distribution_function_of_speed", math.nan)),
-            data.get("state", numpy.arange(len(data["x"]))).astype(int))
+            data.get("state", numpy.arange(len(data["x"]))).astype(int),
+            data.get("position", {}))
     if "trajectory" in file:
         found["trajectory"] = _datasets(file["trajectory"])
     return found

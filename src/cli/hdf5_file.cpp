@@ -8,6 +8,7 @@
 #include <array>
 #include <exception>
 #include <filesystem>
+#include <numeric>
 #include <utility>
 
 #include "stickslip/base/errors.hpp"
@@ -94,6 +95,17 @@ void write_density(Hdf5File& file, const quantities::DensityField& field, double
   file.attribute("/density/pdf", "meaning",
                  "P(X = x_i, V in dv)/dv by rows of x and columns of v, without the atom at v = 0");
   file.attribute("/density/pdf", "smallest_value", field.least);
+  if (const auto& [p, pdf, atom, marginal] = field.position; !p.empty()) {
+    file.make_group("/density/position");
+    write("position/p", p, "positions of the spring, evenly spaced");
+    write("position/atom", atom, "P(P in the step around p_i, V = 0 and sticking)");
+    write("position/marginal_p", marginal, "P(P in the step around p_i)");
+    std::vector<std::size_t> rows(pdf.size() / field.pdf.v().size());
+    std::iota(rows.begin(), rows.end(), std::size_t{0});
+    file.write_rows("/density/position/pdf", p.size(), field.pdf.v().size(), rows, pdf);
+    file.attribute("/density/position/pdf", "meaning",
+                   "P(P in the step around p_i, V in dv)/dv by rows of p and columns of v");
+  }
   file.attribute("/density", "error_of_distribution_function_of_speed", error);
   file.attribute("/density", "probability_at_velocity_cut", field.truncated_mass);
 }

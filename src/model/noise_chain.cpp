@@ -149,7 +149,10 @@ LevelTable LevelTable::of(const Projection& projection) {
   table.reversed_ = projection.reversed;
   table.projected_ = true;
   table.continuous_ = projection.continuous;
-  if (!projection.shown.x.empty()) table.shown_ = std::make_shared<const Shown>(projection.shown);
+  for (auto [part, of] : {std::pair{&table.shown_, &projection.shown},
+                          {&table.by_position_, &projection.by_position}}) {
+    if (!of->x.empty()) *part = std::make_shared<const Shown>(*of);
+  }
   table.position_ = projection.position;
   table.noise_ = projection.noise;
   if (table.has_positions()) {

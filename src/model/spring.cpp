@@ -25,7 +25,8 @@ struct Positions {
   std::vector<double> p;
   Dense upwards, downwards;
 
-  Positions(const std::vector<double>& ends, int nodes, bool bounded) : bounded_(bounded) {
+  Positions(const std::vector<double>& ends, int nodes, bool bounded)
+      : bounded_(bounded), ends_(ends) {
     const LegendreRule rule(nodes);
     for (int m = 0; m < nodes; ++m) {
       const int there = nodes - 1 - m;
@@ -44,6 +45,29 @@ struct Positions {
     for (int r = 0; r < count; ++r) {
       for (int c = 0; c < count; ++c) downwards(r, c) = mirrored(count - 1 - r, count - 1 - c);
     }
+  }
+
+  /// By the position alone, at even steps; the node of the j-th position with n is place(n, j).
+  template <class Place>
+  [[nodiscard]] Shown shown(double shift, std::size_t count, const Place& place) const {
+    constexpr int steps = 200;
+    const double step = (ends_.back() - ends_.front()) / steps;
+    Shown shown;
+    std::size_t e = 0;
+    for (int i = 0; i < steps; ++i) {
+      const double at = ends_.front() + step * (i + 0.5);
+      while (e + 2 < ends_.size() && at > ends_[e + 1]) ++e;
+      const double half = (ends_[e + 1] - ends_[e]) / 2, t = (at - ends_[e]) / half - 1;
+      shown.x.push_back(at + shift);
+      auto& shares = shown.of.emplace_back();
+      for (std::size_t k = 0; k < node_.size(); ++k) {
+        const double share = step * cardinal(node_, k, t) / (weight_[k] * half);
+        for (std::size_t n = 0; n < count; ++n) {
+          shares.push_back({static_cast<int>(place(n, e * node_.size() + k)), share});
+        }
+      }
+    }
+    return shown;
   }
 
  private:
@@ -73,6 +97,7 @@ struct Positions {
   }
 
   bool bounded_;
+  std::vector<double> ends_;
   std::vector<double> node_, weight_;  // of [-1, 1]
 };
 
@@ -299,6 +324,8 @@ Projection Spring::of_coloured(const Thresholds& thresholds, int order) const {
   made.step = grid.finest * scale;
   made.rate = 2 * diffusion / (grid.finest * grid.finest);
   made.shown = shown_by(x, y.p);
+  made.by_position = y.shown(body_.bias / k, along,
+                             [across](std::size_t a, std::size_t j) { return a * across + j; });
   return made;
 }
 
@@ -349,6 +376,9 @@ Projection Spring::of_chain(const Thresholds& thresholds, int order) const {
   made.peak_intensity = chain_->tail_intensity();
   made.step = chain_->step();
   made.rate = chain_->rate();
+  made.by_position = y.shown(body_.bias / k, levels, [&](std::size_t level, std::size_t j) {
+    return place[level * across + j];
+  });
   return made;
 }
 

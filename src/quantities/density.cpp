@@ -79,7 +79,7 @@ std::vector<std::size_t> PhaseField::local_levels() const {
 }
 
 // Functions are averages over the nodes at a force.
-std::vector<double> PhaseField::shown_rows() const {
+std::vector<double> PhaseField::rows_at(const model::Shown& shown) const {
   const std::size_t columns = v_.size();
   std::vector<double> all(static_cast<std::size_t>(noise_->count()) * columns, 0.0), rows;
   for (std::size_t n = 0; n < local_noise_.size(); ++n) {
@@ -88,11 +88,11 @@ std::vector<double> PhaseField::shown_rows() const {
                 all.begin() + static_cast<std::ptrdiff_t>(place * columns));
   }
   linalg::sum_over_ranks(comm_, all);
-  for (std::size_t i : local_levels()) {
-    const double whole = kind_ == Kind::function ? shown_->at(i, probability_) : 1;
+  for (std::size_t i = 0; i < shown.x.size() && linalg::rank(comm_) == 0; ++i) {
+    const double whole = kind_ == Kind::function ? shown.at(i, probability_) : 1;
     for (std::size_t v = 0; v < columns; ++v) {
       double sum = 0;
-      for (const auto& [node, share] : shown_->of[i]) {
+      for (const auto& [node, share] : shown.of[i]) {
         const auto n = static_cast<std::size_t>(node);
         sum += share * all[n * columns + v] * (kind_ == Kind::function ? probability_[n] : 1);
       }
@@ -103,7 +103,7 @@ std::vector<double> PhaseField::shown_rows() const {
 }
 
 std::vector<double> PhaseField::local_rows() const {
-  if (shown_ != nullptr) return shown_rows();
+  if (shown_ != nullptr) return rows_at(*shown_);
   std::vector<double> rows;
   for_each_group([&](const generator::Nodes::Group& group) {
     const double* nodes = by_node_.data() + row_start(group.begin);
@@ -207,11 +207,18 @@ DensityField density_field(const StationaryDistribution& distribution) {
   field.least = least_value(distribution.states().comm(), field.pdf);
   field.noise_marginal = noise->spread(noise_marginal);
   for (std::size_t i = 0; i < field.atom.size(); ++i) field.noise_marginal[i] += field.atom[i];
+  const auto sums_at = [](const model::Shown& places, const std::vector<double>& by_node) {
+    std::vector<double> sums;
+    for (std::size_t i = 0; i < places.x.size(); ++i) sums.push_back(places.at(i, by_node));
+    return sums;
+  };
+  if (chain.table != nullptr && chain.table->by_position() != nullptr) {
+    const auto& places = *chain.table->by_position();
+    field.position = {places.x, field.pdf.rows_at(places), sums_at(places, field.atom),
+                      sums_at(places, field.noise_marginal)};
+  }
   for (auto* marginal : {&field.atom, &field.noise_marginal}) {
-    if (shown == nullptr) break;
-    std::vector<double> by_force;
-    for (std::size_t i = 0; i < shown->x.size(); ++i) by_force.push_back(shown->at(i, *marginal));
-    *marginal = std::move(by_force);
+    if (shown != nullptr) *marginal = sums_at(*shown, *marginal);
   }
   return field;
 }

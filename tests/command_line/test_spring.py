@@ -2,6 +2,9 @@
 
 import math
 
+import h5py
+import numpy
+
 from running import Case
 
 SPRING = ("-spring_stiffness", "1", "-mu_d", "0.5")
@@ -54,6 +57,18 @@ class Spring(Case):
                            "E_absV": math.sqrt(2 / math.pi / 3)}.items():
             found = 2 * once[key]["value"] - twice[key]["value"]
             self.assertLess(abs(found - value), 3 * once[key]["error"] + 1e-5, key)
+
+    def test_the_density_of_the_position(self):
+        for noise, options, bias in (("ou", (), 0.7), ("telegraph", TELEGRAPH, 0)):
+            results = self.summary(*SPRING, *options, "-bias", bias, "-quantities", "sticking,moments,density", "-accuracy",
+                                   "1e-2", "-output", "d.h5")["results"]
+            with h5py.File(self.folder / "d.h5") as file:
+                v, weights = (file["density"][name][()] for name in ("v", "weights"))
+                p, pdf, atom, marginal = (file["density/position"][name][()] for name in ("p", "pdf", "atom", "marginal_p"))
+            numpy.testing.assert_allclose(pdf @ weights + atom, marginal, atol=1e-12, err_msg=noise)
+            for key, found in {"P_stick": atom.sum(), "E_P": marginal @ p, "E_P2": marginal @ p**2, "E_V2": weights @ (
+                    pdf.sum(axis=0) * v**2)}.items():
+                self.assertAlmostEqual(found, results[key]["value"], delta=2e-3, msg=(noise, key))
 
     def test_bias_is_a_shift(self):
         options = (*SPRING, *TELEGRAPH, *MOMENTS, "-degree", "4")

@@ -43,8 +43,9 @@ struct Transition {
 [[nodiscard]] std::vector<bool> reached_from(std::size_t first, std::size_t states,
                                              const std::vector<Transition>& transitions);
 
-/// Evenly spaced forces at which a distribution over nodes is shown: probability `share` times that
-/// of a node belongs to each of them, so that probabilities over the spacing are a density.
+/// Evenly spaced forces, or positions, at which a distribution over nodes is shown: probability
+/// `share` times that of a node belongs to each of them, so that probabilities over the spacing are
+/// a density.
 struct Shown {
   struct Share {
     int node;  ///< by place, the lowest at 0
@@ -77,7 +78,7 @@ struct Projection {
   double rate = 0;                           ///< with which step^2 rate is the diffusivity of X
   bool even = false, reversed = false;       ///< as LevelTable has them
   bool continuous = true;                    ///< whether the paths of the noise are
-  Shown shown = {};
+  Shown shown = {}, by_position = {};
 };
 
 /// Forces at which functions of the noise are not smooth: where bodies at rest start to move, and
@@ -150,6 +151,8 @@ class LevelTable {
   [[nodiscard]] bool continuous() const { return continuous_; }
   /// The forces at which a distribution over these nodes is shown; null for levels.
   [[nodiscard]] const Shown* shown() const { return shown_.get(); }
+  /// The positions at which it is shown; null where there are none.
+  [[nodiscard]] const Shown* by_position() const { return by_position_.get(); }
   /// Whether all jumps are to neighbours.
   [[nodiscard]] bool neighbours_only() const { return jumps_.empty(); }
   /// Calls visit(level, rate) for the jumps from a level, from the lowest one up.
@@ -247,7 +250,7 @@ class LevelTable {
   double mean_ = 0, variance_ = 0, intensity_ = 0, rate_ = 0, step_ = 0;
   bool even_ = true, reversed_ = true;
   bool projected_ = false, continuous_ = false;
-  std::shared_ptr<const Shown> shown_;
+  std::shared_ptr<const Shown> shown_, by_position_;
   std::vector<std::vector<Jump>> upwards_, downwards_;  // by place, per distance
   std::vector<double> position_, noise_;
 };

@@ -1,6 +1,8 @@
 #pragma once
 /// The stationary distribution as a field over (x, v), and the distribution of |V|.
 
+#include <mpi.h>
+
 #include <memory>
 #include <vector>
 
@@ -43,13 +45,14 @@ class PhaseField {
   /// rank has all. Collective. O(levels velocity nodes).
   [[nodiscard]] std::vector<std::size_t> local_levels() const;
   [[nodiscard]] std::vector<double> local_rows() const;
+  /// All rows of other places, on the first rank. Collective. O(shares velocity nodes).
+  [[nodiscard]] std::vector<double> rows_at(const model::Shown& shown) const;
 
  private:
   // Calls visit(group) for the groups of this rank, rising.
   template <class Visit>
   void for_each_group(Visit visit) const;
   [[nodiscard]] std::size_t row_start(int noise) const;
-  [[nodiscard]] std::vector<double> shown_rows() const;
 
   MPI_Comm comm_;
   const model::Shown* shown_;
@@ -64,6 +67,14 @@ class PhaseField {
 
 class StationaryDistribution;
 
+/// pi by rows of the position of a body on a spring, all forces together.
+struct PositionField {
+  std::vector<double> p;         ///< evenly spaced [length]
+  std::vector<double> pdf;       ///< P(P in the step around p_i, V in dv)/dv, on the first rank
+  std::vector<double> atom;      ///< P(P in that step, sticking)
+  std::vector<double> marginal;  ///< P(P in that step)
+};
+
 /// pi on the whole grid. All but `pdf` is the same on all ranks. Between two neighbours among
 /// `cells` the density is the polynomial through its values on the nodes there, whose integral is
 /// their sum with `weights`.
@@ -77,6 +88,7 @@ struct DensityField {
   std::vector<double> velocity_marginal;  ///< density of V without its atom P_stick [1/velocity]
   std::vector<double> states;  ///< where several may have one x: numbers of the states, index i + N
   double truncated_mass = 0;   ///< probability kept in holding states at |V| = v_max
+  PositionField position = {};  ///< empty without a spring
 };
 
 /// Collective. The state at v = 0 of a grid scheme is counted with the first node.

@@ -1,5 +1,6 @@
 """The stationary distribution, and a path."""
 
+import dataclasses
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -45,9 +46,15 @@ def resolved(density: "numpy.ndarray") -> "numpy.ndarray":
 
 @styled
 def density(items: Sequence[Results]) -> "Figure":
-    """The stationary distribution of (X, V), its marginals, and the static states. What is not resolved is white."""
+    """The stationary distribution of (X, V), or of (P, V) with a spring, its marginals, and the static states. What is not
+    resolved is white."""
     (results,) = items
-    field = results.density.by_force()
+    tied = bool(results.density.position)
+    field = results.density.by_position() if tied else results.density.by_force()
+    # Polynomials along the position swing where hardly any probability is.
+    clear = field.marginal_x > -CLEAR * field.marginal_x.min()
+    field = dataclasses.replace(field, **{name: numpy.where(clear, getattr(field, name).T, 0).T for name in (
+        "values", "at_rest", "marginal_x")})
     x, v, ends = field.x, field.window(1e-4), cells_around(field.x)
     width = numpy.diff(ends)
     figure = Figure(figsize=(7.2, 5.2))
@@ -64,7 +71,7 @@ def density(items: Sequence[Results]) -> "Figure":
     margin = 0.03 * numpy.ptp(v)  # rest is seen whole where no body moves to one of the sides
     plane.set(xlim=(ends[seen[0]], ends[seen[-1] + 1]), ylim=(min(v[0], -margin), max(v[-1], margin)),
               ylabel="velocity $v$  [velocity]")
-    figure.colorbar(image, ax=by_v, label="density of sliding  [1/(force velocity)]")
+    figure.colorbar(image, ax=by_v, label=f"density of sliding  [1/({'length' if tied else 'force'} velocity)]")
 
     marginal = field.marginal(v)
     by_v.plot(marginal, v, color=SLIDE)
@@ -77,13 +84,14 @@ def density(items: Sequence[Results]) -> "Figure":
         by_v.plot(1, 0, ">", color=STICK, markersize=5, clip_on=False, transform=by_v.get_yaxis_transform())
     by_x.bar(x, field.marginal_x - field.at_rest, width * 0.9, field.at_rest, color=SLIDE)
     by_x.bar(x, field.at_rest, width * 0.9, color=STICK)
-    by_x.set(xlabel="force $x$  [force]", ylabel="$P(X = x)$")
+    by_x.set(**dict(xlabel="position $p$  [length]", ylabel="$P(P = p)$") if tied else
+             dict(xlabel="force $x$  [force]", ylabel="$P(X = x)$"))
     corner.legend(handles=[  # here, as the panels are full
         Patch(color=SLIDE, label="sliding"), Patch(color=STICK, label="sticking"),
         Line2D([], [], color=STICK, marker="o", linestyle="", label="at rest, by area"),
         Line2D([], [], color=STICK, marker=">", linewidth=1, label=r"$P_\mathrm{stick}\,\delta(v)$")],
         loc="upper left", borderaxespad=0, labelspacing=0.8)
-    figure.suptitle(rf"{title(results)}: $P_\mathrm{{stick}}$ = {field.mass_at_rest:.4g}", fontsize=10)
+    figure.suptitle(rf"{title(results)}: $P_\mathrm{{stick}}$ = {results.density.mass_at_rest:.4g}", fontsize=10)
     return figure
 
 
