@@ -39,6 +39,9 @@ struct Process {
   Friction friction;
   Drag drag;        ///< with what friction loses to the speed: b(v) + F(0+) - F(v) on v > 0
   double bias = 0;  ///< g, a constant force
+  /// K of a spring, where the motion itself is followed; nodes of a projection stand for positions
+  /// by themselves, and then it is 0.
+  double stiffness = 0;
 
   /// Whether (-X, -Y, -V) has another distribution, so that E[V] need not be 0.
   [[nodiscard]] bool drifts() const {
@@ -49,7 +52,7 @@ struct Process {
   /// The process (-X, -Y, -V): what holds for sliding upwards here holds for sliding downwards
   /// there.
   [[nodiscard]] Process mirrored() const {
-    return {noise.mirrored(), friction.mirrored(), drag.mirrored(), -bias};
+    return {noise.mirrored(), friction.mirrored(), drag.mirrored(), -bias, stiffness};
   }
 
   /// The highest level that can stick; k with symmetry, where the levels |i| <= k stick.
@@ -236,9 +239,10 @@ struct Scene {
   std::string drag_name = "linear";
   std::string drag_expression;  ///< b(v) as text, of the drag law "expression"
   Drag drag;
-  Parameters own = {};  ///< values of its noise or laws that have no place above
-  double bias = 0;      ///< constant force g
-  /// What ties the body to p = 0, and takes the bias.
+  Parameters own = {};   ///< values of its noise or laws that have no place above
+  double bias = 0;       ///< constant force g
+  double stiffness = 0;  ///< K of a spring that ties the body to p = 0
+  /// The body on that spring where noise drives it; takes the bias.
   std::shared_ptr<const Spring> spring = {};
   std::shared_ptr<const ForceRecord> force = {};  ///< a given one, beside the noise or without it
   std::optional<int> noise_levels;                ///< N, if fixed by the user
@@ -272,6 +276,15 @@ struct Scene {
       all.noise.table = std::make_shared<const LevelTable>(noise.table->within(
           std::min(-levels, all.lowest_static() - 1), std::max(levels, all.highest_static() + 1)));
     }
+    return all;
+  }
+  /// The process whose motion is followed, by simulation or under a given force: that which is
+  /// meant, with the levels of the noise and the spring itself.
+  [[nodiscard]] Process followed() const {
+    Process all = meant();
+    if (spring && spring->chain() != nullptr) all.noise = *spring->chain();
+    all.bias = bias;
+    all.stiffness = stiffness;
     return all;
   }
   [[nodiscard]] Thresholds thresholds() const {

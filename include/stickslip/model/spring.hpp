@@ -42,7 +42,8 @@ class Spring final : public Projector {
   /// Throws UnfitTable if all levels hold the body at some positions, where it stays for ever.
   Spring(Body body, const NoiseChain& chain);
 
-  [[nodiscard]] double stiffness() const { return body_.stiffness; }
+  /// The noise on levels; null where it is an Ornstein-Uhlenbeck process.
+  [[nodiscard]] const NoiseChain* chain() const { return chain_.get(); }
   [[nodiscard]] bool fits(const Thresholds& thresholds, int order) const override;
   [[nodiscard]] bool damped() const override { return false; }
 
