@@ -126,6 +126,10 @@ class Rules {
     const std::string why = "needs a noise of levels alone, which " + option + " has not";
     const bool solved = r_.method.route == Route::excursion && r_.method.scheme == Scheme::hp,
                simulated = method_.simulates;
+    report("spring_stiffness", !simulated && !r_.scene.solvable(),
+           fmt::format("takes more than {} pairs of a force and a position",
+                       model::Spring::kMostPairs),
+           "take fewer levels, less friction, or -route monte_carlo");
     report("route", !solved && !simulated, why, "leave it out, or " + way);
     report("study", study_, why, "leave it out, or " + way);
     report("accuracy",

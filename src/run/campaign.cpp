@@ -248,7 +248,8 @@ Identity identity(const Case& given) {
     found.emplace_back("-" + name, std::visit(text, value));
   }
   found.emplace_back("-noise_levels", s.noise_levels ? text(*s.noise_levels) : "");
-  if (const auto table = s.followed().noise.table; table && !s.noise.gaussian) {
+  if (const auto table = s.spring ? s.followed().noise.table : s.noise.table;
+      table && !s.noise.gaussian) {
     std::string levels;
     for (int i = table->lowest(); i <= table->highest(); ++i) {
       levels += fmt::format("{}", table->at(i).x);

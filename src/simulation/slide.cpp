@@ -257,11 +257,12 @@ void Slider::step(const Step& step, double force, double slope, double end, bool
   double h = std::min(step.reach(), step.turn());
   if (slide.time + h == slide.time) h = step.reach();  // it turns here, up to rounding
   double next = step.at(h).u;
-  slide.stopped = next <= 0 && next < slide.end && step.end_towards(next) == 0 &&
-                  force + slope * h - k_ * step.at(h).q < -negligible_;
-  if (slide.stopped || step.leaves(next)) {
-    const double bound = step.end_towards(next);
-    h = root([&](double t) { return step.at(t).u - bound; }, h);
+  const bool ends = next <= 0 && next < slide.end && step.end_towards(next) == 0;
+  if (ends || step.leaves(next)) {
+    const double bound = step.end_towards(next),
+                 there = root([&](double t) { return step.at(t).u - bound; }, h);
+    slide.stopped = ends && force + slope * there - k_ * step.at(there).q < -negligible_;
+    if (slide.stopped || !ends) h = there;
     next = bound;
   }
   if (integrals) integrate(step, h, slide);

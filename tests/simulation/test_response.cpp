@@ -79,10 +79,13 @@ class OnSpring {
   // At rest; sets the direction of the motion that follows.
   long double wait(long double t, long double most) {
     const long double force = first_ + slope_ * t - k_ * p, mu = friction_.mu_s;
-    const long double to = slope_ > 0 ? (mu - force) / slope_ : (-mu - force) / slope_;
-    if (std::abs(force) > mu || to < most)
-      y_ = std::abs(force) > mu ? (force > 0 ? 1 : -1) : (slope_ > 0 ? 1 : -1);
-    return std::abs(force) > mu ? 0 : std::min(to, most);
+    y_ = force > mu ? 1 : force < -mu ? -1 : 0;
+    if (y_ != 0) return 0;
+    if (slope_ == 0) return most;
+    const int towards = slope_ > 0 ? 1 : -1;
+    const long double time = (towards * mu - force) / slope_;
+    if (time < most) y_ = towards;
+    return std::min(time, most);
   }
   [[nodiscard]] State moved(long double t, long double h) const {
     const auto rate = [&](long double at, const State& s) {
@@ -250,12 +253,13 @@ TEST_CASE("response: a body on a spring, beside small steps") {
                                 {model::Drag{0.1, 0.4}, 2.5},
                                 {law, 6.0}}) {
     for (bool constant : {false, true}) {
-      ForceRecord r = record(0.4, 60, [](double t) { return 2 * std::sin(1.3 * t + t * t / 30); });
+      ForceRecord r =
+          record(0.4, 60, [](double t) { return (1 + t / 20) * std::sin(1.3 * t + t * t / 60); });
       r.constant = constant;
       const Response found = respond(process(friction, drag, 0, k), r);
       OnSpring body(friction, drag, k);
       const double size = largest(found.x), speed = largest(found.v);
-      REQUIRE(found.slips.size() > 2);
+      REQUIRE(!found.slips.empty());
       for (std::size_t n = 0; n + 1 < r.time.size(); ++n) {
         body.follow(r, n, k > 100 ? 20000 : 2000);
         INFO(drag.linear << " " << k << " at " << n);

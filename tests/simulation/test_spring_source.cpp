@@ -68,7 +68,7 @@ TEST_CASE("spring source: values of noise on levels", "[simulation]") {
   const auto process = on_spring(telegraph(1.5, 0.5), 1, 0.5, 1, 1);
   const auto tally = simulated(process, 20);
   CHECK(deviations(tally, two) < 4);
-  CHECK(deviations(simulated(on_spring(telegraph(1.5, 0.51), 1, 0.5, 1, 1), 20), two) > 4);
+  CHECK(deviations(simulated(on_spring(telegraph(1.5, 0.55), 1, 0.5, 1, 1), 20), two) > 4);
 
   CHECK(deviations(simulated(on_spring(telegraph(1.2, 1), 1, 0.8, 0.2, 1), 8),
                    {{"P_stick", .21002},

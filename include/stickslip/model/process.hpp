@@ -256,9 +256,11 @@ struct Scene {
   [[nodiscard]] const Projector* projector() const {
     return spring ? static_cast<const Projector*>(spring.get()) : noise.gaussian.get();
   }
+  /// Whether a body on a spring has few enough pairs of a force and a position to be solved for.
+  [[nodiscard]] bool solvable() const { return !spring || spring->fits(thresholds(), kMeantOrder); }
   /// The range that is meant when noise_levels is open: full_range(), or that of the table.
   [[nodiscard]] int full_levels() const {
-    if (projector() != nullptr) return kMeantOrder;
+    if (projector() != nullptr) return solvable() ? kMeantOrder : 2;
     return noise.table ? std::max(-noise.table->lowest(), noise.table->highest())
                        : full_range(tau, delta, noise.deviation);
   }

@@ -214,16 +214,15 @@ struct Discounted {
 /// One excursion: a sliding phase from v = 0 on a level beyond the static ones to rest, and the
 /// sticking phase until these are left again.
 struct Excursion {
-  double slide = 0, stick = 0;                          ///< durations [time]
-  double square = 0;                                    ///< int v^2 dt
-  double path = 0;                                      ///< int |v| dt
-  double product = 0;                                   ///< int x v dt
-  double place = 0, place_square = 0, place_noise = 0;  ///< int p dt, int p^2 dt, int x p dt
-  double within = 0;                                    ///< time with |X| <= mu_s
-  double noise_square = 0;                              ///< int x^2 dt
-  int entry = 0;        ///< level i at which the sliding phase ended
-  bool turned = false;  ///< whether the next one starts from the other side
-  double jumps = 0;     ///< of the noise
+  double slide = 0, stick = 0;  ///< durations [time]
+  double square = 0;            ///< int v^2 dt
+  double path = 0;              ///< int |v| dt
+  double product = 0;           ///< int x v dt
+  double within = 0;            ///< time with |X| <= mu_s
+  double noise_square = 0;      ///< int x^2 dt
+  int entry = 0;                ///< level i at which the sliding phase ended
+  bool turned = false;          ///< whether the next one starts from the other side
+  double jumps = 0;             ///< of the noise
   /// int v exp(-i omega t) dt, t from the start of the excursion.
   std::vector<std::complex<double>> transform = {};
   double drift = 0;                         ///< int v dt
@@ -235,6 +234,7 @@ struct Excursion {
   bool upwards = true;                      ///< direction of the sliding phase
   int start = 0, next = 0;                  ///< levels from which it and the next one start
   bool ends_cycle = true;                   ///< whether that is the one from which its cycle did
+  double place = 0, place_square = 0, place_noise = 0;  ///< int p dt, int p^2 dt, int x p dt
 };
 
 /// Draws excursions from any of the levels from which they start. Exact for linear and no drag,
