@@ -126,10 +126,6 @@ class Rules {
     const std::string why = "needs a noise of levels alone, which " + option + " has not";
     const bool solved = r_.method.route == Route::excursion && r_.method.scheme == Scheme::hp,
                simulated = method_.simulates;
-    report("spring_stiffness", !simulated && !r_.scene.solvable(),
-           fmt::format("takes more than {} pairs of a force and a position",
-                       model::Spring::kMostPairs),
-           "take fewer levels, less friction, or -route monte_carlo");
     report("route", !solved && !simulated, why, "leave it out, or " + way);
     report("study", study_, why, "leave it out, or " + way);
     report("accuracy",
@@ -179,6 +175,10 @@ class Rules {
   // What loses its meaning where a spring holds the body.
   void of_springs(bool from_rest) {
     if (!r_.scene.spring) return;
+    report("spring_stiffness", !method_.simulates && !r_.scene.solvable(),
+           fmt::format("takes more than {} pairs of a force and a position",
+                       model::Spring::kMostPairs),
+           "take fewer levels, less friction, or -route monte_carlo");
     const auto travels = wanted([](const auto& entry) { return entry.of_travel; });
     report("quantities", !travels.empty(),
            fmt::format("asks for {}, and a spring keeps the body in one place: its displacement "

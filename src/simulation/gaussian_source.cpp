@@ -217,6 +217,7 @@ class GaussianSource final : public PathSource {
         size_(noise_.a.rows()),
         within_(process.friction.mu_s),
         stiffness_(process.stiffness),
+        centre_(kTied<Flow> ? process.bias / process.stiffness : 0),
         now_(size_ + 1),
         before_(size_),
         normal_(size_ + 1) {
@@ -252,7 +253,7 @@ class GaussianSource final : public PathSource {
   // From rest, with the noise in its stationary distribution.
   void begin(RandomStream& random) override {
     clock_ = k_ = 0;
-    p_ = 0;
+    p_ = centre_;
     for (double& z : normal_) z = random.normal();
     std::fill(now_.begin(), now_.end(), 0.0);
     linalg::add_product(stationary_, normal_.data(), now_.data());
@@ -437,7 +438,7 @@ class GaussianSource final : public PathSource {
   std::array<Side, 2> sides_;
   double deviation_, diffusion_;
   int size_;
-  double within_, stiffness_;
+  double within_, stiffness_, centre_;
   std::vector<Step> steps_;
   std::vector<double> now_, before_, normal_;  // Z, and the integral of X over the last step
   double p_ = 0, place_ = 0;

@@ -257,6 +257,7 @@ class Source final : public PathSource {
         flow_(flow_of<Flow>(process)),
         backward_flow_(flow_of<Flow>(process.mirrored())),
         stiffness_(process.stiffness),
+        centre_(kTied<Flow> ? process.mean_force() / process.stiffness : 0),
         highest_(process.friction.mu_s - process.bias),
         lowest_(-process.mirrored().friction.mu_s - process.bias),
         wanted_(wanted),
@@ -282,7 +283,8 @@ class Source final : public PathSource {
   // From rest where the spring holds the body without force.
   void begin(RandomStream& random) override {
     i_ = at_start_->draw(random.uniform());
-    p_ = clock_ = 0;
+    clock_ = 0;
+    p_ = centre_;
     while (rests(i_)) i_ = levels_.next(i_, 1, random);
   }
 
@@ -431,7 +433,8 @@ class Source final : public PathSource {
   Levels levels_;
   std::optional<NoiseLevels> at_start_;
   Flow flow_, backward_flow_;
-  double stiffness_, highest_, lowest_, p_ = 0;  // forces of noise and spring that hold a body
+  double stiffness_, centre_, highest_, lowest_,
+      p_ = 0;  // forces of noise and spring that hold a body
   int i_ = 0;
   Wanted wanted_;
   bool symmetric_;

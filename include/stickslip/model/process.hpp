@@ -296,7 +296,9 @@ struct Scene {
             {-other.at_rest() - constant, friction.at_rest() - constant}};
   }
   /// The process that is meant: on noise_levels if fixed, else on the full range.
-  [[nodiscard]] Process meant() const { return process(noise_levels.value_or(full_levels())); }
+  [[nodiscard]] Process meant() const {
+    return process(spring ? full_levels() : noise_levels.value_or(full_levels()));
+  }
 };
 
 // Static friction as it acts on noise levels that are delta apart.
