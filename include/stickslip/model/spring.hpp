@@ -45,8 +45,7 @@ class Spring final : public Projector {
   /// The noise on levels; null where it is an Ornstein-Uhlenbeck process.
   [[nodiscard]] const NoiseChain* chain() const { return chain_.get(); }
   [[nodiscard]] bool fits(const Thresholds& thresholds, int order) const override;
-  static constexpr std::size_t kMostPairs =
-      3000;  ///< that fit to be solved for
+  static constexpr std::size_t kMostPairs = 3000;  ///< that fit to be solved for
   [[nodiscard]] bool damped() const override { return false; }
 
  private:
