@@ -193,7 +193,7 @@ std::vector<Option> method_options() {
           "excursions", "1000000", Range::whole(2, 1e15),
           "number of simulated excursions of -route monte_carlo; of pairs of them without "
           "symmetry, of paths for functions of time, and under Gaussian noise of continuous paths "
-          "of stretches of paths. If -accuracy is given, the simulation "
+          "or with -spring_stiffness of stretches of paths. If -accuracy is given, the simulation "
           "ends when all confidence intervals are small enough",
           "a million gives about three digits")
           .called({"samples", "n_samples", "trials", "paths"}),

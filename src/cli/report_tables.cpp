@@ -275,7 +275,7 @@ std::string scene_text(const model::Scene& s) {
     for (auto& part : effects::heading(choice->in(s), s)) parts.push_back(std::move(part));
   }
   if (s.bias != 0) add("bias", s.bias);
-  if (s.spring) add("spring_stiffness", s.spring->stiffness());
+  if (s.stiffness > 0) add("spring_stiffness", s.stiffness);
   if (s.force) {
     const auto n = s.force->peak();
     parts.push_back(fmt::format("force of {}, at most {:.5g}{} at time {:g}{}", s.force->file,

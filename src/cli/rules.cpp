@@ -125,20 +125,26 @@ class Rules {
     }
     const std::string why = "needs a noise of levels alone, which " + option + " has not";
     const bool solved = r_.method.route == Route::excursion && r_.method.scheme == Scheme::hp,
-               simulated = method_.simulates && !r_.scene.spring;
+               simulated = method_.simulates;
     report("route", !solved && !simulated, why, "leave it out, or " + way);
     report("study", study_, why, "leave it out, or " + way);
-    report("accuracy", simulated && q_.accuracy_given && q_.accuracy < 2 * simulation::kStepError,
+    report("accuracy",
+           simulated && r_.scene.noise.gaussian && q_.accuracy_given &&
+               q_.accuracy < 2 * simulation::kStepError,
            fmt::format("is not reached by simulated paths of {}, whose steps leave {:g}", option,
                        simulation::kStepError),
            fmt::format("take {:g} or more", 2 * simulation::kStepError));
     const auto of_levels = wanted([simulated](const auto& entry) {
       return simulated ? !entry.by_excursion : entry.of_levels;
     });
-    report("quantities", !of_levels.empty(),
-           fmt::format("asks for {}, which are {} for noises of levels alone, and {} has none",
-                       enumerate(of_levels, "and"), simulated ? "simulated" : "found", option),
-           "leave that out, or " + way);
+    report(
+        "quantities", !of_levels.empty(),
+        simulated && r_.scene.spring
+            ? fmt::format("asks for {}, which are not simulated with {}",
+                          enumerate(of_levels, "and"), option)
+            : fmt::format("asks for {}, which are {} for noises of levels alone, and {} has none",
+                          enumerate(of_levels, "and"), simulated ? "simulated" : "found", option),
+        "leave that out, or " + way);
     const bool starts = std::ranges::any_of(cases::entries(), [this](const auto* entry) {
       return q_.wants(entry->quantity) && entry->takes("start");
     });
@@ -169,6 +175,10 @@ class Rules {
   // What loses its meaning where a spring holds the body.
   void of_springs(bool from_rest) {
     if (!r_.scene.spring) return;
+    report("spring_stiffness", !method_.simulates && !r_.scene.solvable(),
+           fmt::format("takes more than {} pairs of a force and a position",
+                       model::Spring::kMostPairs),
+           "take fewer levels, less friction, or -route monte_carlo");
     const auto travels = wanted([](const auto& entry) { return entry.of_travel; });
     report("quantities", !travels.empty(),
            fmt::format("asks for {}, and a spring keeps the body in one place: its displacement "

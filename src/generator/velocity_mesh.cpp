@@ -333,7 +333,7 @@ constexpr double kSmooth = 10;  // powers from which on elements of any length d
 // The power in v with which solutions are rough below all other scales, kSmooth at most. A level of
 // no net force there is left at the speed b'(0) v, or at once where b is like a root of v.
 double power_at_rest(const model::Process& process) {
-  const auto& [noise, friction, drag, bias] = process;
+  const auto& [noise, friction, drag, bias, stiffness] = process;
   const double exponent = friction.weakens() ? friction.stribeck->exponent : 1;
   const double power = exponent == std::round(exponent) ? kSmooth : 1 + exponent;
   const double slope = drag.slope_at_rest();
@@ -351,7 +351,7 @@ using Layers = std::map<double, int>;
 // either branch: solutions are like |v - v*|^(Lambda/beta).
 Layers partings(const model::Process& process, const MeshRule& rule, bool on_both = true) {
   constexpr double smallest = 1e-12;
-  const auto& [noise, friction, drag, bias] = process;
+  const auto& [noise, friction, drag, bias, stiffness] = process;
   const double end = std::min(rule.v_max, drag.rises_until), rest = friction.at_rest() - bias;
   Layers found;
   if (!(end > 0)) return found;

@@ -15,7 +15,7 @@ namespace {
 
 using Dense = linalg::Matrix<double>;
 
-constexpr int kMostPairs = 3000;
+constexpr std::size_t kMostKept = 1000000;  // pairs of what is simulated
 
 /// Functions of the position on discontinuous elements: nodes, and derivatives along a motion to
 /// either side, whose rows sum to zero. A body leaves an element at the end to which it moves. The
@@ -383,6 +383,10 @@ Projection Spring::of_chain(const Thresholds& thresholds, int order) const {
 }
 
 bool Spring::fits(const Thresholds& thresholds, int order) const {
+  return pairs(thresholds, order) <= kMostPairs;
+}
+
+std::size_t Spring::pairs(const Thresholds& thresholds, int order) const {
   const std::size_t across = (ends_of_positions(thresholds, order).size() - 1) *
                              static_cast<std::size_t>(nodes_of_element(order));
   std::size_t along = chain_ ? static_cast<std::size_t>(chain_->count()) : 0;
@@ -390,13 +394,13 @@ bool Spring::fits(const Thresholds& thresholds, int order) const {
     const ForceLayout grid = forces_of(thresholds, scales_.force, reach(order), order);
     along = static_cast<std::size_t>(AlongForce::nodes_of(grid.mesh, grid.cuts));
   }
-  return along * across <= kMostPairs;
+  return along * across;
 }
 
 Projection Spring::projection(const Thresholds& thresholds, int order) const {
-  if (!fits(thresholds, order)) {
+  if (pairs(thresholds, order) > kMostKept) {
     throw UnfitTable(0,
-                     fmt::format("takes more than {} pairs of a force and a position", kMostPairs));
+                     fmt::format("takes more than {} pairs of a force and a position", kMostKept));
   }
   return chain_ ? of_chain(thresholds, order) : of_coloured(thresholds, order);
 }

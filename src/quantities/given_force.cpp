@@ -19,7 +19,7 @@ using simulation::Slip;
 
 constexpr double kUnit = std::numeric_limits<double>::epsilon();
 
-// Forces and drag by some units of rounding larger or smaller.
+// Forces, drag and spring by some units of rounding larger or smaller.
 Response varied(model::Process process, model::ForceRecord record, double velocity, double sign) {
   const double of_drag = 1 + sign * (process.drag.is_linear() ? 4 * kUnit : 2e-14);
   process.drag.linear *= of_drag;
@@ -27,6 +27,7 @@ Response varied(model::Process process, model::ForceRecord record, double veloci
   if (const auto law = process.drag.law) {
     process.drag.law = [law, of_drag](double v) { return of_drag * law(v); };
   }
+  process.stiffness *= 1 + sign * 4 * kUnit;
   for (double& force : record.force) force *= 1 + sign * 4 * kUnit;
   return simulation::respond(process, record, velocity, 0.5);
 }
@@ -65,9 +66,9 @@ Response on_refined(const model::Process& process, const model::ForceRecord& giv
 class Compared {
  public:
   Compared(const model::Scene& scene, double velocity)
-      : found_(simulation::respond(scene.process(1), *scene.force, velocity)),
-        others_{on_refined(scene.process(1), *scene.force, velocity),
-                varied(scene.process(1), *scene.force, velocity, -1)},
+      : found_(simulation::respond(scene.followed(), *scene.force, velocity)),
+        others_{on_refined(scene.followed(), *scene.force, velocity),
+                varied(scene.followed(), *scene.force, velocity, -1)},
         alike_(std::ranges::all_of(others_, [&](const Response& other) {
           return other.slips.size() == found_.slips.size();
         })) {}

@@ -28,10 +28,18 @@ void moments_tally(Tally& tally) {
   tally.over_time(cases::kEV2, &Excursion::square);
   tally.over_time(cases::kEAbsV, &Excursion::path);
   tally.over_time(cases::kEXV, &Excursion::product);
-  if (tally.process().drifts()) return tally.over_time(cases::kEV, &Excursion::drift, -1);
-  tally.report([](const Tally&) -> Estimates {
-    return {{.row = &cases::kEV, .values = {{}}, .exact = true}};
-  });
+  const bool tied = tally.process().stiffness > 0;
+  const auto odd = [&](const cases::Row& row, double Excursion::*of, bool zero) {
+    if (!zero) return tally.over_time(row, of, -1);
+    tally.report([&row](const Tally&) -> Estimates {
+      return {{.row = &row, .values = {{}}, .exact = true}};
+    });
+  };
+  odd(cases::kEV, &Excursion::drift, tied || !tally.process().drifts());
+  if (!tied) return;
+  odd(cases::kEP, &Excursion::place, !tally.process().drifts());
+  tally.over_time(cases::kEP2, &Excursion::place_square);
+  tally.over_time(cases::kEXP, &Excursion::place_noise);
 }
 
 Sums<ObservedPhases> observe(Tally& tally, const model::Observable& f) {

@@ -248,7 +248,8 @@ Identity identity(const Case& given) {
     found.emplace_back("-" + name, std::visit(text, value));
   }
   found.emplace_back("-noise_levels", s.noise_levels ? text(*s.noise_levels) : "");
-  if (const auto& table = s.noise.table; table && !s.noise.gaussian) {
+  if (const auto table = s.spring ? s.followed().noise.table : s.noise.table;
+      table && !s.noise.gaussian) {
     std::string levels;
     for (int i = table->lowest(); i <= table->highest(); ++i) {
       levels += fmt::format("{}", table->at(i).x);
@@ -286,7 +287,7 @@ class Campaign {
         given_(given),
         question_(given.question),
         progress_(progress),
-        process_(given.scene.meant()),
+        process_(given.scene.followed()),
         sampler_(given.question, process_),
         tally_(given.question, process_) {
     if (file.empty()) return;
@@ -326,8 +327,8 @@ class Campaign {
   void require_time() const {
     const auto& wanted = tally_.wanted();
     const double longest = wanted.time.empty() ? 0 : std::ranges::max(wanted.time),
-                 jumps = process_.noise.gaussian ? simulation::steps_of_sample(process_)
-                                                 : jumps_of_sample(longest);
+                 jumps = simulation::follows_paths(process_) ? simulation::steps_of_sample(process_)
+                                                             : jumps_of_sample(longest);
     constexpr double jump = 15e-9, month = 30 * 86400.0;
     const double seconds = given_.method.excursions * jumps * jump / linalg::ranks(comm_);
     if (seconds < month) return;

@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
+#include "slide.hpp"
 #include "stickslip/base/text.hpp"
 #include "stickslip/linalg/dense.hpp"
-#include "stickslip/simulation/flow.hpp"
 #include "stickslip/simulation/walk.hpp"
 
 namespace stickslip::simulation {
@@ -151,36 +151,64 @@ constexpr double kRoom = 2;        // and the threshold in a step at rest that n
 constexpr double kClear = 8;       // times what it has to miss is the force in which bodies stop
 constexpr double kMemories = 8;    // that a path forgets before a sample, which lasts as long
 
-struct Scales {
-  double fastest;  // rate [1/time]
-  double memory;   // time [time]
-};
+}  // namespace
 
-Scales scales_of(const model::Process& process) {
-  const auto& noise = *process.noise.gaussian;
-  double slowest = kInfinity;
-  for (const auto& term : noise.terms()) slowest = std::min(slowest, term.decay);
+void PathSource::draw_from(int level, RandomStream& random, Excursion& e) {
+  if (level == kPathBegins) {
+    begin(random);
+    while (clock_ < span_) follow_one(random, e);
+    end_ = span_ * (2 + std::floor((clock_ - span_) / span_));
+  }
+  follow_one(random, e);
+  e.next = clock_ < end_ ? kPathBegins + 1 : kPathBegins;
+}
+
+PathScales scales_of(const model::Process& process) {
+  const auto& noise = process.noise;
+  const double root = std::sqrt(process.stiffness);
+  double slowest = kInfinity, fastest = noise.rate();
+  if (noise.gaussian) {
+    for (const auto& term : noise.gaussian->terms()) slowest = std::min(slowest, term.decay);
+    fastest = noise.gaussian->matrix().largest();
+  } else {
+    slowest = 1 / noise.correlation_time();
+  }
   const auto& [drag, friction] = std::tie(process.drag, process.friction);
-  const double speed = drag.terminal_velocity(3 * noise.deviation()),
+  const double deviation =
+                   noise.gaussian ? noise.gaussian->deviation() : noise.standard_deviation(),
+               speed = drag.terminal_velocity(3 * deviation),
                slope = std::isfinite(speed) ? drag.steepest(speed) : 0,
                loss = std::isfinite(speed) ? -drag(speed) / speed : 0;
   // Under dry friction mu alone white noise of strength 2 D forgets its velocity at mu^2/(4 D).
   const double least = std::min(friction.mu_d, friction.mirrored().mu_d),
-               held = std::max(least - std::abs(process.bias), 0.0),
-               strength = std::max(noise.power_spectral_density(0) / 2, 1e-300);
-  return {noise.matrix().largest() + slope,
-          1 / slowest + 1 / (loss + held * held / (4 * strength))};
+               bias = process.stiffness > 0 ? 0 : std::abs(process.bias),
+               held = std::max(least - bias, 0.0),
+               strength = std::max(noise.gaussian ? noise.gaussian->power_spectral_density(0) / 2
+                                                  : noise.intensity(),
+                                   1e-300),
+               by_friction = held * held / (4 * strength);
+  if (process.stiffness == 0) return {fastest + slope, 1 / slowest + 1 / (loss + by_friction)};
+  // The amplitude of an oscillation falls half as fast as its energy; an overdamped body creeps.
+  const double decay = loss + std::min(by_friction, root);
+  return {fastest + slope + root, 1 / slowest + 2 / decay + decay / process.stiffness};
 }
+
+double span_of_sample(const model::Process& process) {
+  return kMemories * scales_of(process).memory;
+}
+
+namespace {
 
 /// Paths by exact Gaussian steps. While a body rests they end where static friction is overcome, by
 /// the law of a Brownian bridge. While it slides the force within a step is its mean, and steps
 /// shorten until the noise can turn neither the speed within them nor, where the body stops,
 /// the force; or down to the shortest step.
 template <class Flow>
-class GaussianSource : public ExcursionSource {
+class GaussianSource final : public PathSource {
  public:
   GaussianSource(const model::Process& process, const Wanted& wanted)
-      : wanted_(wanted),
+      : PathSource(span_of_sample(process)),
+        wanted_(wanted),
         noise_(process.noise.gaussian->matrix()),
         stationary_(root_of(noise_.p)),
         sides_{Side(process), Side(process.mirrored())},
@@ -188,13 +216,13 @@ class GaussianSource : public ExcursionSource {
         diffusion_(deviation_ * noise_.b[0]),
         size_(noise_.a.rows()),
         within_(process.friction.mu_s),
+        stiffness_(process.stiffness),
+        centre_(kTied<Flow> ? process.bias / process.stiffness : 0),
         now_(size_ + 1),
         before_(size_),
         normal_(size_ + 1) {
-    const Scales scales = scales_of(process);
-    const double longest = kLongest / scales.fastest;
+    const double longest = kLongest / scales_of(process).fastest;
     steps_ = steps_of(noise_, deviation_, std::ldexp(longest, -kHalvings), kHalvings + 1);
-    span_ = kMemories * scales.memory;
   }
 
   void draw(RandomStream& random, int level, double place, Excursion& e) override {
@@ -202,23 +230,12 @@ class GaussianSource : public ExcursionSource {
     draw_from(level, random, e);
   }
 
-  // Samples are all excursions that begin in a span of time: so each counts as often as it occurs.
-  void draw_from(int level, RandomStream& random, Excursion& e) override {
-    if (level == kPathBegins) {
-      begin(random);
-      while (time_ < span_) follow_one(random, e);
-      end_ = span_ * (2 + std::floor((time_ - span_) / span_));
-    }
-    follow_one(random, e);
-    e.next = time_ < end_ ? kPathBegins + 1 : kPathBegins;
-  }
-
  private:
   /// What a body that moves one way finds.
   struct Side {
     explicit Side(const model::Process& seen)
         : drag(seen.drag),
-          flow(seen.drag),
+          flow(flow_of<Flow>(seen)),
           start(seen.friction.mu_s - seen.bias),
           balance(seen.friction.at_rest() - seen.bias) {}
 
@@ -228,26 +245,32 @@ class GaussianSource : public ExcursionSource {
   };
   [[nodiscard]] const Side& side(int sign) const { return sides_[sign > 0 ? 0 : 1]; }
   [[nodiscard]] double x() const { return deviation_ * now_[0]; }
-  /// By how much static friction exceeds the force of the noise.
-  [[nodiscard]] double room(int sign) const { return side(sign).start - sign * x(); }
+  /// The force of the spring, against X.
+  [[nodiscard]] double held() const { return kTied<Flow> ? stiffness_ * p_ : 0; }
+  /// By how much static friction exceeds the force.
+  [[nodiscard]] double room(int sign) const { return side(sign).start - sign * (x() - held()); }
 
   // From rest, with the noise in its stationary distribution.
-  void begin(RandomStream& random) {
-    time_ = k_ = 0;
+  void begin(RandomStream& random) override {
+    clock_ = k_ = 0;
+    p_ = centre_;
     for (double& z : normal_) z = random.normal();
     std::fill(now_.begin(), now_.end(), 0.0);
     linalg::add_product(stationary_, normal_.data(), now_.data());
     Excursion none;
     none.integrals.resize(wanted_.observables.size());
     stick(random, none);
+    if (kTied<Flow>) clock_ = 0;
   }
 
-  void follow_one(RandomStream& random, Excursion& e) {
+  void follow_one(RandomStream& random, Excursion& e) override {
+    const double begun = clock_;
     e = {.integrals = std::move(e.integrals)};
     e.integrals.assign(wanted_.observables.size(), {});
     e.upwards = sign_ > 0;
     slide(random, e);
     stick(random, e);
+    if (kTied<Flow>) clock_ = begun + e.slide;
   }
 
   void slide(RandomStream& random, Excursion& e) {
@@ -256,10 +279,10 @@ class GaussianSource : public ExcursionSource {
       const double from = x(), time = steps_[k_].time;
       double mean = step(random, true);
       const auto move = [&] {
-        const double force = sign_ * mean - side(sign_).balance;
+        const double force = sign_ * (mean - held()) - side(sign_).balance;
         return side(sign_).flow.move(speed, force, time, wanted_.integrals);
       };
-      Piece piece = move();
+      auto piece = move();
       // The shortest steps end as they are, as the force may have turned in them.
       const bool cuts = piece.stopped && k_ > 0;
       if (cuts) {
@@ -282,8 +305,9 @@ class GaussianSource : public ExcursionSource {
 
   // The longest step in which neither the speed nor, where the body stops, the force turns.
   void choose_for(double speed) {
-    const double force = sign_ * x() - side(sign_).balance + side(sign_).drag(speed),
-                 bend = std::min(sign_ * drift(), 0.0) / 2, spread = kDeviations * diffusion_;
+    const double force = sign_ * (x() - held()) - side(sign_).balance + side(sign_).drag(speed),
+                 bend = std::min(sign_ * drift() - stiffness_ * speed, 0.0) / 2,
+                 spread = kDeviations * diffusion_;
     choose([&](int k) {
       const auto& [h, root, rows] = steps_[k];
       const bool moves = speed + h * (force + h * bend - spread * root / std::sqrt(3)) > 0;
@@ -306,7 +330,7 @@ class GaussianSource : public ExcursionSource {
       share = std::min(upwards, downwards);
       if (share <= 1) {
         sign_ = upwards < downwards ? 1 : -1;
-        const double there = sign_ * side(sign_).start / deviation_;
+        const double there = (sign_ * side(sign_).start + held()) / deviation_;
         cut(share, (there - before_[0] - share * (now_[0] - before_[0])) / noise_.b[0]);
       }
       rest(e, std::min(share, 1.0) * steps_[k_].time, from);
@@ -325,6 +349,7 @@ class GaussianSource : public ExcursionSource {
 
   void rest(Excursion& e, double time, double from) {
     e.stick += time;
+    if constexpr (kTied<Flow>) follow_position(e, p_, (from + x()) / 2, 0, {{.time = time}});
     follow_noise(e, time, from, x());
     observe(e, &Integrals::stick, time, {from, 0}, {x(), 0}, 0);
   }
@@ -353,7 +378,7 @@ class GaussianSource : public ExcursionSource {
       for (int c = 0; c <= r; ++c) sum += *factor++ * normal_[c];
       now_[r] = sum;
     }
-    time_ += step.time;
+    clock_ += step.time;
     return now_[size_] / step.time;
   }
 
@@ -362,14 +387,20 @@ class GaussianSource : public ExcursionSource {
     for (int i = 0; i < size_; ++i) {
       now_[i] = before_[i] + share * (now_[i] - before_[i]) + noise_.b[i] * off;
     }
-    time_ -= (1 - share) * steps_[k_].time;
+    clock_ -= (1 - share) * steps_[k_].time;
   }
 
   // The force also changed by `turn` along the piece, and the speed by `rise`.
-  void follow(Excursion& e, const Piece& piece, double mean, double turn, double rise) const {
+  template <class Moved>
+  void follow(Excursion& e, Moved piece, double mean, double turn, double rise) {
     const double bend = sign_ * turn * piece.time / 12, path = piece.path - bend * piece.time;
     ++e.jumps;
     e.peak = std::max(e.peak, piece.end);
+    if constexpr (kTied<Flow>) {
+      piece.path = path;
+      e.place_noise += bend * path;
+      follow_position(e, p_, mean, sign_, piece);
+    }
     e.slide += piece.time;
     e.path += path;
     e.drift += sign_ * path;
@@ -407,10 +438,10 @@ class GaussianSource : public ExcursionSource {
   std::array<Side, 2> sides_;
   double deviation_, diffusion_;
   int size_;
-  double within_;
+  double within_, stiffness_, centre_;
   std::vector<Step> steps_;
   std::vector<double> now_, before_, normal_;  // Z, and the integral of X over the last step
-  double span_ = 0, time_ = 0, end_ = 0, place_ = 0;
+  double p_ = 0, place_ = 0;
   int k_ = 0, sign_ = 1;
 };
 
@@ -418,13 +449,12 @@ class GaussianSource : public ExcursionSource {
 
 std::unique_ptr<ExcursionSource> make_gaussian_source(const model::Process& process,
                                                       const Wanted& wanted) {
-  if (process.drag.is_linear())
-    return std::make_unique<GaussianSource<LinearFlow>>(process, wanted);
-  return std::make_unique<GaussianSource<GeneralFlow>>(process, wanted);
+  return with_flow<GaussianSource>(process, wanted);
 }
 
 double steps_of_sample(const model::Process& process) {
   const auto [fastest, memory] = scales_of(process);
+  if (!process.noise.gaussian) return 2 * kMemories * memory * process.noise.rate();
   const auto& friction = process.friction;
   const double scale = process.noise.gaussian->deviation() * std::sqrt(2),
                up = friction.mu_s - process.bias, down = friction.mirrored().mu_s + process.bias,

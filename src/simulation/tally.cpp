@@ -169,7 +169,7 @@ const Histogram& Tally::histogram(std::vector<double> edges, const Number& of) {
 }
 
 Sampled Tally::sampled() const {
-  if (process_.noise.gaussian || !process_.noise.neighbours_only()) return Sampled::cycles;
+  if (follows_paths(process_) || !process_.noise.neighbours_only()) return Sampled::cycles;
   return process_.symmetric() ? Sampled::one_side : Sampled::sides;
 }
 
@@ -283,7 +283,7 @@ namespace {
 
 // By side; of cycles, which are the shorter the more often their start occurs.
 std::vector<int> starts_of(const model::Process& process, Sampled sampled) {
-  if (process.noise.gaussian) return {kPathBegins};
+  if (follows_paths(process)) return {kPathBegins};
   if (!process.sticks()) return {};
   if (sampled != Sampled::cycles) return {process.exit_level(true), process.exit_level(false)};
   const auto flows = process.flows_to_starts();

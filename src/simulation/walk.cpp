@@ -10,8 +10,8 @@
 #include <optional>
 #include <stdexcept>
 
+#include "slide.hpp"
 #include "stickslip/base/text.hpp"
-#include "stickslip/simulation/flow.hpp"
 
 namespace stickslip::simulation {
 namespace {
@@ -249,16 +249,22 @@ class Levels {
 
 /// Speeds are |V| >= 0.
 template <class Flow>
-class Source : public ExcursionSource {
+class Source final : public PathSource {
  public:
   Source(const model::Process& process, const Wanted& wanted)
-      : levels_(process),
-        flow_(process.drag),
-        backward_flow_(process.mirrored().drag),
+      : PathSource(kTied<Flow> ? span_of_sample(process) : 0),
+        levels_(process),
+        flow_(flow_of<Flow>(process)),
+        backward_flow_(flow_of<Flow>(process.mirrored())),
+        stiffness_(process.stiffness),
+        centre_(kTied<Flow> ? process.mean_force() / process.stiffness : 0),
+        highest_(process.friction.mu_s - process.bias),
+        lowest_(-process.mirrored().friction.mu_s - process.bias),
         wanted_(wanted),
         symmetric_(process.symmetric()) {
     piece_transform_.resize(wanted.omega.size());
     phase_.resize(wanted.omega.size());
+    if (kTied<Flow>) at_start_.emplace(process.noise);
   }
 
   void draw(RandomStream& random, int level, double place, Excursion& e) override {
@@ -268,6 +274,21 @@ class Source : public ExcursionSource {
   }
 
   void draw_from(int level, RandomStream& random, Excursion& e) override {
+    if constexpr (kTied<Flow>) return PathSource::draw_from(level, random, e);
+    i_ = level;
+    follow_one(random, e);
+  }
+
+ private:
+  // From rest where the spring holds the body without force.
+  void begin(RandomStream& random) override {
+    i_ = at_start_->draw(random.uniform());
+    clock_ = 0;
+    p_ = centre_;
+    while (rests(i_)) i_ = levels_.next(i_, 1, random);
+  }
+
+  void follow_one(RandomStream& random, Excursion& e) override {
     e = {.transform = std::move(e.transform),
          .integrals = std::move(e.integrals),
          .discounted = std::move(e.discounted)};
@@ -275,25 +296,45 @@ class Source : public ExcursionSource {
     e.integrals.assign(wanted_.observables.size(), {});
     e.discounted.assign(wanted_.observables.size() * wanted_.discount.size(), {});
     std::fill(phase_.begin(), phase_.end(), 1.0);
-    e.start = e.entry = level;
-    e.upwards = levels_.direction(level) > 0;
-    double wait = levels_.wait(level, random);
-    if (!levels_.rests(level)) slide(random, e, wait, level);
+    e.start = e.entry = i_;
+    e.upwards = direction(i_) > 0;
+    double wait = levels_.wait(i_, random);
+    if (!rests(i_)) slide(random, e, wait, i_);
+    clock_ += e.slide;
     sticking(random, e, wait);
+    i_ = e.next;
   }
 
- private:
+  /// The force of noise and spring.
+  [[nodiscard]] double pull(int i) const { return levels_.level(i) - stiffness_ * p_; }
+  [[nodiscard]] bool rests(int i) const {
+    if constexpr (!kTied<Flow>) return levels_.rests(i);
+    return lowest_ <= pull(i) && pull(i) <= highest_;
+  }
+  [[nodiscard]] int direction(int i) const {
+    return kTied<Flow> ? (pull(i) > highest_ ? 1 : -1) : levels_.direction(i);
+  }
+  [[nodiscard]] double force(int sign, int i) const {
+    const double noise = levels_.force(sign, i);
+    return kTied<Flow> ? noise - sign * stiffness_ * p_ : noise;
+  }
+
   // Until rest; `wait` is the time to the next jump of the noise.
   void slide(RandomStream& random, Excursion& e, double& wait, int i) {
-    int sign = levels_.direction(i);
+    int sign = direction(i);
     double speed = 0;
     for (;;) {
-      const double force = levels_.force(sign, i);
-      const Piece piece = flow(sign).move(speed, force, wait, wanted_.integrals);
-      if (!wanted_.observables.empty()) observe_slide(e, piece.time, speed, i, sign);
-      follow_passages(e, piece, speed, i, sign);
+      const double force = this->force(sign, i);
+      const auto piece = flow(sign).move(speed, force, wait, wanted_.integrals);
+      if (!wanted_.observables.empty()) observe_slide(e, piece.time, speed, force, i, sign);
+      if constexpr (kTied<Flow>) {
+        e.peak = std::max(e.peak, piece.peak);
+        follow_position(e, p_, levels_.level(i), sign, piece);
+      } else {
+        follow_passages(e, piece, speed, force, sign);
+        if (!wanted_.omega.empty()) follow_transform(e, piece, speed, force, sign);
+      }
       follow(e, piece, i, sign);
-      if (!wanted_.omega.empty()) follow_transform(e, piece, speed, force, sign);
       speed = piece.end;
       if (!piece.stopped) {
         i = levels_.next(i, sign, random);
@@ -302,7 +343,7 @@ class Source : public ExcursionSource {
         continue;
       }
       wait -= piece.time;
-      if (levels_.rests(i)) break;
+      if (rests(i)) break;
       sign = -sign;  // pushed on the other way
     }
     e.entry = i;
@@ -321,11 +362,11 @@ class Source : public ExcursionSource {
   }
 
   // The speed rises or falls all along a piece.
-  void follow_passages(Excursion& e, const Piece& piece, double speed, int i, int sign) const {
+  void follow_passages(Excursion& e, const Piece& piece, double speed, double force,
+                       int sign) const {
     const auto& speeds = wanted_.speeds;
     for (std::size_t n = e.passages.size(); n < speeds.size() && speeds[n] <= piece.end; ++n) {
-      e.passages.push_back(
-          e.slide + rise_time(flow(sign), speed, levels_.force(sign, i), piece.time, speeds[n]));
+      e.passages.push_back(e.slide + rise_time(flow(sign), speed, force, piece.time, speeds[n]));
     }
   }
 
@@ -343,10 +384,10 @@ class Source : public ExcursionSource {
   }
 
   // Places along the golden ratio spread evenly, and each is uniformly distributed.
-  void observe_slide(Excursion& e, double time, double speed, int i, int sign) {
+  void observe_slide(Excursion& e, double time, double speed, double force, int i, int sign) {
     place_ = std::fmod(place_ + 0.6180339887498949, 1);
     const double at = place_ * time;
-    const double then = flow(sign).move(speed, levels_.force(sign, i), at, false).end;
+    const double then = flow(sign).move(speed, force, at, false).end;
     observe(e, &Integrals::slide, time, at, levels_.level(i), sign, sign * then);
   }
 
@@ -371,17 +412,18 @@ class Source : public ExcursionSource {
   }
 
   // Until the static levels are left.
-  void sticking(RandomStream& random, Excursion& e, double wait) const {
+  void sticking(RandomStream& random, Excursion& e, double wait) {
     int i = e.entry;
     for (;;) {
       if (!wanted_.observables.empty()) {
         observe(e, &Integrals::stick, wait, 0, levels_.level(i), 0, 0);
       }
       e.stick += wait;
+      if constexpr (kTied<Flow>) follow_position(e, p_, levels_.level(i), 0, {{.time = wait}});
       if (wanted_.noise) follow_noise(e, i, wait);
       i = levels_.next(i, 1, random);
       ++e.jumps;
-      if (!levels_.rests(i)) break;
+      if (!rests(i)) break;
       wait = levels_.wait(i, random);
     }
     e.next = i;
@@ -389,7 +431,11 @@ class Source : public ExcursionSource {
   }
 
   Levels levels_;
+  std::optional<NoiseLevels> at_start_;
   Flow flow_, backward_flow_;
+  double stiffness_, centre_, highest_, lowest_,
+      p_ = 0;  // forces of noise and spring that hold a body
+  int i_ = 0;
   Wanted wanted_;
   bool symmetric_;
   double place_ = 0;
@@ -407,8 +453,7 @@ std::size_t Wanted::observe(const model::Observable& f) {
 
 std::unique_ptr<ExcursionSource> make_source(const model::Process& process, const Wanted& wanted) {
   if (process.noise.gaussian) return make_gaussian_source(process, wanted);
-  if (process.drag.is_linear()) return std::make_unique<Source<LinearFlow>>(process, wanted);
-  return std::make_unique<Source<GeneralFlow>>(process, wanted);
+  return with_flow<Source>(process, wanted);
 }
 
 }  // namespace stickslip::simulation

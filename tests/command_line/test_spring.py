@@ -88,12 +88,44 @@ class Spring(Case):
         self.assertGreater(results["E_P"]["value"], 5 * results["E_P"]["error"])
         self.assertAlmostEqual(power / (results["E_V2"]["value"] + 0.55 * results["E_absV"]["value"]), 1, delta=1e-6)
 
+    def test_simulation(self):
+        """Beside the solution, and for more levels than that takes."""
+        asked = (*SPRING, "-quantities", "sticking,moments,noise_law")
+        simulated = ("-route", "monte_carlo", "-excursions", "1500")
+        noise = (*TELEGRAPH, "-mu_s_minus", "1.2", "-mu_d_minus", "0.6", "-bias", "0.3")
+        right = self.summary(*asked, *noise, "-accuracy", "1e-2")["results"]
+        found = self.summary(*asked, *noise, *simulated)["results"]
+        for key in ("P_stick", "mean_slide", "E_V2", "E_absV", "E_XV", "E_P", "E_P2", "E_XP", "P_X_le_mu_s", "E_X2"):
+            off = abs(found[key]["value"] - right[key]["value"])
+            self.assertLess(off, 4 * found[key]["error"] / 1.96 + right[key]["error"] + 1e-12, key)
+        many = self.summary(*SPRING, "-delta", "0.25", "-noise_levels", "24", *MOMENTS[:2], *simulated)["results"]
+        self.assertLess(abs(many["P_stick"]["value"] - 0.2749), 4 * many["P_stick"]["error"] / 1.96)
+        self.assertGreater(abs(many["P_stick"]["value"] - 0.31024), 6 * many["P_stick"]["error"] / 1.96)
+
+    def test_given_force(self):
+        """A constant force on a body without drag: half a swing to twice the distance at which the spring holds it."""
+        (self.folder / "record.csv").write_text("time,force\n0,1.9\n10,1.9\n")
+        asked = ("-quantities", "given_force", "-force_file", "record.csv", "-spring_stiffness", "4", "-mu_d", "0.5",
+                 "-drag", "none")
+        summary = self.summary(*asked)
+        results = summary["results"]
+        self.assertAlmostEqual(results["final_displacement"]["value"], 2 * 1.4 / 4, delta=1e-13)
+        self.assertAlmostEqual(results["slip_end"]["value"][0], math.pi / 2, delta=1e-13)
+        self.assertAlmostEqual(results["largest_speed"]["value"], 1.4 / 2, delta=1e-13)
+        self.assertEqual(summary["scene"]["spring_stiffness"], 4)
+        without = self.summary(*asked[:4], *asked[6:])["results"]
+        self.assertAlmostEqual(without["final_displacement"]["value"], 1.4 / 2 * 100, delta=1e-10)
+
     def test_what_is_refused(self):
         self.refuse(*SPRING, "-quantities", "displacement", "-time", "1", "-start", "stationary",
                     message=("asks for displacement, and a spring keeps the body in one place",))
         self.refuse(*SPRING, "-quantities", "expectation", "-observable", "v^2", "-time", "1", "-start", "rest",
                     message=("-start = rest: does not say at which position",))
-        self.refuse(*SPRING, "-route", "monte_carlo", message=("-route = monte_carlo: needs a noise of levels alone",))
+        self.refuse(*SPRING, "-route", "lambda", message=("-route = lambda: needs a noise of levels alone",))
+        self.refuse(*SPRING, "-route", "monte_carlo", "-quantities", "spectrum", "-omega", "1",
+                    message=("asks for spectrum, which are not simulated with -spring_stiffness",))
+        self.refuse(*SPRING, "-delta", "0.25",
+                    message=("-spring_stiffness = 1: takes more than 3000 pairs", "or -route monte_carlo"))
         self.refuse(*SPRING, "-noise", "narrow_band", "-band_frequency", "1", "-band_width", "1",
                     message=("-spring_stiffness = 1: goes with noise of levels, or with one",))
         self.refuse("-spring_stiffness", "0", message=("-spring_stiffness = 0", "(0, inf)"))

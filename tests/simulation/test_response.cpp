@@ -14,8 +14,9 @@ using test::records;
 
 namespace {
 
-model::Process process(const model::Friction& friction, const model::Drag& drag, double bias = 0) {
-  return {{1, 0.125, 1}, friction, model::with_weakening(drag, friction), bias};
+model::Process process(const model::Friction& friction, const model::Drag& drag, double bias = 0,
+                       double stiffness = 0) {
+  return {{1, 0.125, 1}, friction, model::with_weakening(drag, friction), bias, stiffness};
 }
 
 /// V' = X + g + b(V) - F(V) sign V in many small steps of order 4; bodies stop where V changes
@@ -47,6 +48,81 @@ Stepped stepped(const ForceRecord& r, const model::Friction& friction, const mod
   }
   return s;
 }
+
+/// V' = X - K p + b(V) - F(V) sign V, p' = V, by Runge-Kutta steps of order 4 in long double, cut
+/// by halving where V changes sign; and at rest until X - K p exceeds static friction. Errors fall
+/// like the fourth power of the steps, of which `fine` fill an interval between samples.
+class OnSpring {
+ public:
+  OnSpring(const model::Friction& friction, const model::Drag& drag, long double k)
+      : friction_(friction), drag_(drag), k_(k) {}
+
+  void follow(const ForceRecord& r, std::size_t n, int fine) {
+    const long double length = static_cast<long double>(r.time[n + 1]) - r.time[n];
+    slope_ = r.constant ? 0 : (static_cast<long double>(r.force[n + 1]) - r.force[n]) / length;
+    first_ = r.force[n];
+    for (long double t = 0; t < length;) {
+      if (y_ == 0) {
+        t += wait(t, length - t);
+        if (t >= length) return;
+      }
+      t = slide(t, std::min(length / fine, length - t));
+    }
+  }
+
+  long double v = 0, p = 0;
+
+ private:
+  struct State {
+    long double v, p;
+  };
+  // At rest; sets the direction of the motion that follows.
+  long double wait(long double t, long double most) {
+    const long double force = first_ + slope_ * t - k_ * p, mu = friction_.mu_s;
+    y_ = force > mu ? 1 : force < -mu ? -1 : 0;
+    if (y_ != 0) return 0;
+    if (slope_ == 0) return most;
+    const int towards = slope_ > 0 ? 1 : -1;
+    const long double time = (towards * mu - force) / slope_;
+    if (time < most) y_ = towards;
+    return std::min(time, most);
+  }
+  [[nodiscard]] State moved(long double t, long double h) const {
+    const auto rate = [&](long double at, const State& s) {
+      const double speed = std::max(static_cast<double>(y_ * s.v), 0.0);
+      const long double slide = drag_.is_linear() ? -drag_.linear * s.v : y_ * drag_(speed);
+      return State{first_ + slope_ * at - k_ * s.p + slide - y_ * friction_(speed), s.v};
+    };
+    const auto ahead = [&](long double by, const State& d) {
+      return State{v + by * d.v, p + by * d.p};
+    };
+    const State a = rate(t, {v, p}), b = rate(t + h / 2, ahead(h / 2, a)),
+                c = rate(t + h / 2, ahead(h / 2, b)), d = rate(t + h, ahead(h, c));
+    return {v + h / 6 * (a.v + 2 * b.v + 2 * c.v + d.v),
+            p + h / 6 * (a.p + 2 * b.p + 2 * c.p + d.p)};
+  }
+  long double slide(long double t, long double h) {
+    const bool stops = y_ * moved(t, h).v <= 0;
+    if (stops) {
+      long double low = 0;
+      while (true) {
+        const long double middle = (low + h) / 2;
+        if (middle <= low || middle >= h) break;
+        (y_ * moved(t, middle).v > 0 ? low : h) = middle;
+      }
+    }
+    const State next = moved(t, h);
+    v = stops ? 0 : next.v;
+    p = next.p;
+    if (stops) y_ = 0;
+    return t + h;
+  }
+
+  model::Friction friction_;
+  model::Drag drag_;
+  long double k_, first_ = 0, slope_ = 0;
+  int y_ = 0;
+};
 
 double largest(const std::vector<double>& values) {
   double most = 0;
@@ -162,6 +238,65 @@ TEST_CASE("response: friction that weakens and any drag, beside many small steps
       CHECK(finer.x.back() == Approx(found.x.back()).epsilon(1e-13));
       CHECK(finer.fastest == Approx(found.fastest).epsilon(1e-13));
     }
+  }
+}
+
+TEST_CASE("response: a body on a spring, beside small steps") {
+  const model::Friction friction{0.6, 0.35};
+  const model::Drag law{0, 0, [](double v) { return -0.3 * v - 0.2 * v * std::abs(v); }, 64};
+  for (const auto& [drag, k] : {std::pair{model::Drag{0, 0}, 2.5},
+                                {model::Drag{0.3, 0}, 2.5},
+                                {model::Drag{2, 0}, 1.0},
+                                {model::Drag{7, 0}, 1.0},
+                                {model::Drag{0.5, 0}, 1e-7},
+                                {model::Drag{0.5, 0}, 900.0},
+                                {model::Drag{0.1, 0.4}, 2.5},
+                                {law, 6.0}}) {
+    for (bool constant : {false, true}) {
+      ForceRecord r =
+          record(0.4, 60, [](double t) { return (1 + t / 20) * std::sin(1.3 * t + t * t / 60); });
+      r.constant = constant;
+      const Response found = respond(process(friction, drag, 0, k), r);
+      OnSpring body(friction, drag, k);
+      const double size = largest(found.x), speed = largest(found.v);
+      REQUIRE(!found.slips.empty());
+      for (std::size_t n = 0; n + 1 < r.time.size(); ++n) {
+        body.follow(r, n, k > 100 ? 20000 : 2000);
+        INFO(drag.linear << " " << k << " at " << n);
+        REQUIRE(std::abs(found.x[n + 1] - static_cast<double>(body.p)) <= 1e-10 * size);
+        REQUIRE(std::abs(found.v[n + 1] - static_cast<double>(body.v)) <= 1e-10 * speed);
+      }
+    }
+  }
+}
+
+TEST_CASE("response: a body that a spring stops") {
+  // From v without drag, 1/2 of a swing about -mu/K: mu + K a = (mu^2 + K v^2)^(1/2), and so on.
+  constexpr double v = 3, mu = 0.5, k = 4;
+  const ForceRecord r{{0, 100}, {0, 0}};
+  const Response found = respond(process({mu, mu}, {0, 0}, 0, k), r, v);
+  double amplitude = std::sqrt(mu * mu + k * v * v) / k, x = amplitude - mu / k, farthest = x;
+  double time = std::atan2(v * std::sqrt(k), mu) / std::sqrt(k);
+  for (; k * std::abs(x) > mu; time += std::numbers::pi / std::sqrt(k)) {
+    x = x > 0 ? -(x - 2 * mu / k) : -(x + 2 * mu / k);
+  }
+  REQUIRE(found.slips.size() == 1);
+  CHECK(found.x.back() == Approx(x).epsilon(1e-13));
+  CHECK(found.farthest == Approx(farthest).epsilon(1e-14));
+  CHECK(found.slips[0].end == Approx(time).epsilon(1e-14));
+  CHECK(found.slips[0].peak == v);
+}
+
+TEST_CASE(
+    "response: an overdamped body creeps towards where the spring holds it, and never rests") {
+  constexpr double mu_d = 0.5, k = 1, c = 5, force = 1.5, root = 2.291287847477920003294;
+  for (double time : {3.0, 30.0, 3000.0}) {
+    const Response found = respond(process({1, mu_d}, {c, 0}, 0, k), {{0, time}, {force, force}});
+    const double slow = c / 2 - root, fast = c / 2 + root, most = (force - mu_d) / k,
+                 left =
+                     (fast * std::exp(-slow * time) - slow * std::exp(-fast * time)) / (2 * root);
+    CHECK(found.x.back() == Approx(most * (1 - left)).epsilon(1e-13));
+    CHECK(found.sliding == time);
   }
 }
 

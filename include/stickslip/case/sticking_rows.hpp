@@ -98,8 +98,8 @@ inline constexpr Row kEV{.key = "E_V",
                          .asks = true};
 
 // Of a body on a spring, which other routes do not know.
-inline constexpr Routes kAllButExcursion{Route::lambda, Route::hitting, Route::null_vector,
-                                         Route::fluid_queue, Route::monte_carlo};
+inline constexpr Routes kWithoutSprings{Route::lambda, Route::hitting, Route::null_vector,
+                                        Route::fluid_queue};
 
 inline constexpr Row kEP{.key = "E_P",
                          .symbol = "E[P]",
@@ -109,7 +109,7 @@ inline constexpr Row kEP{.key = "E_P",
                              "with -spring_stiffness K only; E[X + g]/K where friction is "
                              "the same to both sides",
                          .kind = Kind::drift,
-                         .without = kAllButExcursion,
+                         .without = kWithoutSprings,
                          .asks = true};
 inline constexpr Row kEP2{.key = "E_P2",
                           .symbol = "E[P^2]",
@@ -118,7 +118,7 @@ inline constexpr Row kEP2{.key = "E_P2",
                           .convention = "about 0, with -spring_stiffness K only; K E_P2/2 is the "
                                         "mean potential energy per unit mass",
                           .kind = Kind::positive_mean,
-                          .without = kAllButExcursion,
+                          .without = kWithoutSprings,
                           .asks = true};
 inline constexpr Row kEXP{.key = "E_XP",
                           .symbol = "E[X P]",
@@ -126,7 +126,7 @@ inline constexpr Row kEXP{.key = "E_XP",
                           .unit = "force*length",
                           .convention = "with -spring_stiffness only; tau E[X V] under -noise ou",
                           .kind = Kind::mean,
-                          .without = kAllButExcursion,
+                          .without = kWithoutSprings,
                           .asks = true};
 
 inline constexpr const Row* kMomentsRows[] = {&kEV2, &kEAbsV, &kEXV, &kEV, &kEP, &kEP2, &kEXP};

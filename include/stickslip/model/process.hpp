@@ -39,6 +39,9 @@ struct Process {
   Friction friction;
   Drag drag;        ///< with what friction loses to the speed: b(v) + F(0+) - F(v) on v > 0
   double bias = 0;  ///< g, a constant force
+  /// K of a spring, where the motion itself is followed; nodes of a projection stand for positions
+  /// by themselves, and then it is 0.
+  double stiffness = 0;
 
   /// Whether (-X, -Y, -V) has another distribution, so that E[V] need not be 0.
   [[nodiscard]] bool drifts() const {
@@ -49,7 +52,7 @@ struct Process {
   /// The process (-X, -Y, -V): what holds for sliding upwards here holds for sliding downwards
   /// there.
   [[nodiscard]] Process mirrored() const {
-    return {noise.mirrored(), friction.mirrored(), drag.mirrored(), -bias};
+    return {noise.mirrored(), friction.mirrored(), drag.mirrored(), -bias, stiffness};
   }
 
   /// The highest level that can stick; k with symmetry, where the levels |i| <= k stick.
@@ -236,9 +239,10 @@ struct Scene {
   std::string drag_name = "linear";
   std::string drag_expression;  ///< b(v) as text, of the drag law "expression"
   Drag drag;
-  Parameters own = {};  ///< values of its noise or laws that have no place above
-  double bias = 0;      ///< constant force g
-  /// What ties the body to p = 0, and takes the bias.
+  Parameters own = {};   ///< values of its noise or laws that have no place above
+  double bias = 0;       ///< constant force g
+  double stiffness = 0;  ///< K of a spring that ties the body to p = 0
+  /// The body on that spring where noise drives it; takes the bias.
   std::shared_ptr<const Spring> spring = {};
   std::shared_ptr<const ForceRecord> force = {};  ///< a given one, beside the noise or without it
   std::optional<int> noise_levels;                ///< N, if fixed by the user
@@ -252,9 +256,11 @@ struct Scene {
   [[nodiscard]] const Projector* projector() const {
     return spring ? static_cast<const Projector*>(spring.get()) : noise.gaussian.get();
   }
+  /// Whether a body on a spring has few enough pairs of a force and a position to be solved for.
+  [[nodiscard]] bool solvable() const { return !spring || spring->fits(thresholds(), kMeantOrder); }
   /// The range that is meant when noise_levels is open: full_range(), or that of the table.
   [[nodiscard]] int full_levels() const {
-    if (projector() != nullptr) return kMeantOrder;
+    if (projector() != nullptr) return solvable() ? kMeantOrder : 2;
     return noise.table ? std::max(-noise.table->lowest(), noise.table->highest())
                        : full_range(tau, delta, noise.deviation);
   }
@@ -274,6 +280,15 @@ struct Scene {
     }
     return all;
   }
+  /// The process whose motion is followed, by simulation or under a given force: that which is
+  /// meant, with the levels of the noise and the spring itself.
+  [[nodiscard]] Process followed() const {
+    Process all = meant();
+    if (spring && spring->chain() != nullptr) all.noise = *spring->chain();
+    all.bias = bias;
+    all.stiffness = stiffness;
+    return all;
+  }
   [[nodiscard]] Thresholds thresholds() const {
     const Friction other = friction.mirrored();
     const double constant = spring ? 0 : bias;
@@ -281,7 +296,9 @@ struct Scene {
             {-other.at_rest() - constant, friction.at_rest() - constant}};
   }
   /// The process that is meant: on noise_levels if fixed, else on the full range.
-  [[nodiscard]] Process meant() const { return process(noise_levels.value_or(full_levels())); }
+  [[nodiscard]] Process meant() const {
+    return process(spring ? full_levels() : noise_levels.value_or(full_levels()));
+  }
 };
 
 // Static friction as it acts on noise levels that are delta apart.

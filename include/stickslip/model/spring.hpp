@@ -42,8 +42,10 @@ class Spring final : public Projector {
   /// Throws UnfitTable if all levels hold the body at some positions, where it stays for ever.
   Spring(Body body, const NoiseChain& chain);
 
-  [[nodiscard]] double stiffness() const { return body_.stiffness; }
+  /// The noise on levels; null where it is an Ornstein-Uhlenbeck process.
+  [[nodiscard]] const NoiseChain* chain() const { return chain_.get(); }
   [[nodiscard]] bool fits(const Thresholds& thresholds, int order) const override;
+  static constexpr std::size_t kMostPairs = 3000;  ///< that fit to be solved for
   [[nodiscard]] bool damped() const override { return false; }
 
  private:
@@ -54,6 +56,7 @@ class Spring final : public Projector {
     double drag;  // all of it, per velocity
   };
   [[nodiscard]] Projection projection(const Thresholds& thresholds, int order) const override;
+  [[nodiscard]] std::size_t pairs(const Thresholds& thresholds, int order) const;
   [[nodiscard]] Scales find_scales() const;
   [[nodiscard]] double reach(int order) const;
   [[nodiscard]] Projection of_coloured(const Thresholds& thresholds, int order) const;

@@ -24,11 +24,12 @@ struct Response {
 };
 
 /// The motion under a record in the place of the noise, from a velocity at its first sample.
-/// Friction, drag and bias are those of the process; a record with a load goes with Coulomb
-/// friction alone. Where drag is linear, velocities follow closed forms from one event to the next:
-/// static friction that is overcome, a body that stops or turns round. Otherwise they follow Taylor
-/// series of order 14, in steps of at most `stride` of the length at which these are right to
-/// rounding. Local. O(samples), the series 2 microseconds a step.
+/// Friction, drag, bias and spring are those of the process, the spring without force at x = 0; a
+/// record with a load goes with Coulomb friction alone. Where drag is linear, velocities follow
+/// closed forms from one event to the next: static friction that is overcome, a body that stops or
+/// turns round. Otherwise they follow Taylor series of order 14, in steps of at most `stride` of
+/// the length at which these are right to rounding. Local. O(samples), the series 2 microseconds a
+/// step.
 [[nodiscard]] Response respond(const model::Process& process, const model::ForceRecord& record,
                                double velocity = 0, double stride = 1);
 

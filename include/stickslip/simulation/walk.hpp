@@ -234,6 +234,7 @@ struct Excursion {
   bool upwards = true;                      ///< direction of the sliding phase
   int start = 0, next = 0;                  ///< levels from which it and the next one start
   bool ends_cycle = true;                   ///< whether that is the one from which its cycle did
+  double place = 0, place_square = 0, place_noise = 0;  ///< int p dt, int p^2 dt, int x p dt
 };
 
 /// Draws excursions from any of the levels from which they start. Exact for linear and no drag,
@@ -250,10 +251,34 @@ class ExcursionSource {
   virtual void draw_from(int level, RandomStream& random, Excursion& excursion) = 0;
 };
 
-/// Where noise of continuous paths has no levels, its excursions follow one another in samples:
-/// this one is drawn from where the path of a sample begins, and another one is next within a
-/// sample.
+/// Where noise of continuous paths has no levels, or a spring makes excursions start from any
+/// position, they follow one another in samples: this one is drawn from where the path of a sample
+/// begins, and another one is next within a sample.
 constexpr int kPathBegins = 0;
+
+/// Whether samples are such paths.
+[[nodiscard]] inline bool follows_paths(const model::Process& process) {
+  return process.noise.gaussian || process.stiffness > 0;
+}
+
+/// Draws samples that are all excursions which begin in a span of time: so each counts as often as
+/// it occurs. The span follows another one, in which the path forgets where it began. On a spring
+/// time counts while the body slides: at rest it does not forget its position.
+class PathSource : public ExcursionSource {
+ public:
+  explicit PathSource(double span) : span_(span) {}
+
+  void draw_from(int level, RandomStream& random, Excursion& e) override;
+
+ protected:
+  double clock_ = 0;  ///< of the path
+
+ private:
+  virtual void begin(RandomStream& random) = 0;  ///< at the start of a sliding phase
+  virtual void follow_one(RandomStream& random, Excursion& e) = 0;
+
+  double span_, end_ = 0;
+};
 
 /// Closed forms where b is linear, a series otherwise. Local.
 [[nodiscard]] std::unique_ptr<ExcursionSource> make_source(const model::Process& process,
@@ -264,7 +289,16 @@ constexpr int kPathBegins = 0;
 /// What its steps leave of error, relative to each result: intervals are so much wider. With steps
 /// four times as long P_stick of a narrow band is off by 2e-3, P(|X| <= mu_s) by 3e-3.
 constexpr double kStepError = 1e-3;
-/// Steps of such a path that a sample takes at least.
+
+/// Rates and times of paths that samples follow.
+struct PathScales {
+  double fastest;  ///< rate [1/time]
+  double memory;   ///< time [time]
+};
+[[nodiscard]] PathScales scales_of(const model::Process& process);
+/// The span of a sample, in which a path forgets.
+[[nodiscard]] double span_of_sample(const model::Process& process);
+/// Steps of such a path, or jumps of its noise, that a sample takes at least.
 [[nodiscard]] double steps_of_sample(const model::Process& process);
 
 }  // namespace stickslip::simulation

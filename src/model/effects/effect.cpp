@@ -167,7 +167,7 @@ model::Parameters parameters_of(const model::Scene& s) {
   add_values(frictions());
   add_values(drags());
   add("bias", s.bias);
-  if (s.spring) add(kStiffness, s.spring->stiffness());
+  if (s.stiffness > 0) add(kStiffness, s.stiffness);
   if (s.force) {
     add("force_file", s.force->file);
     if (s.force->scale != 1) add("force_scale", s.force->scale);

@@ -12,11 +12,9 @@ namespace stickslip::effects {
 
 void read_spring(Given& given, model::Scene& scene) {
   if (!given.sound()) return;
-  if (scene.noise.name.empty()) {
-    return given.refuse(kStiffness, "acts in scenes that noise drives, and this one has none",
-                        "leave it out");
-  }
-  const model::Spring::Body body{given.real(kStiffness), scene.bias, scene.friction,
+  scene.stiffness = given.real(kStiffness);
+  if (scene.noise.name.empty()) return;  // a given force alone
+  const model::Spring::Body body{scene.stiffness, scene.bias, scene.friction,
                                  model::with_weakening(scene.drag, scene.friction)};
   try {
     if (!scene.noise.gaussian) {
