@@ -1,6 +1,7 @@
 """Results of a sweep, as arrays over the swept options."""
 
 import csv
+import dataclasses
 import math
 import pathlib
 from collections.abc import Mapping, Sequence
@@ -42,7 +43,7 @@ class Sweep(Results):
     def __init__(self, coords: "Mapping[str, Array]", results: Mapping[str, Result], status: "Array",
                  messages: Mapping[tuple[int, ...], str], *, units: Mapping[str, str] | None = None,
                  point_warnings: Mapping[tuple[int, ...], Sequence[str]] | None = None, **parts: Any) -> None:
-        super().__init__(results, **parts)
+        super().__init__({key: dataclasses.replace(one, sweep=self) for key, one in results.items()}, **parts)
         self.point_warnings = {index: list(texts) for index, texts in (point_warnings or {}).items() if texts}
         self.coords = dict(coords)
         self.dims = tuple(self.coords)

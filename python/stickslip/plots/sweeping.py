@@ -7,8 +7,8 @@ from ..results import Result, Results
 from ..sweeps import Sweep
 from . import style
 from .fields import cells_around
-from .style import (COLOURS, MARKERS, STYLES, WORDS, Figure, bars, decades, known, numpy, on_axis, over, scale,
-                    styled, symbol, title, units, without)
+from .style import (COLOURS, MARKERS, STYLES, Figure, bars, decades, known, numpy, on_axis, over, scale,
+                    styled, symbol, title, units, without, words)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -35,17 +35,25 @@ def each(sweep: Sweep) -> "dict[str, Figure]":
 @styled
 def one(sweep: Sweep, key: str) -> "Figure":
     """The figure of one result, as in `each`."""
-    return (_scalar if sweep[key].dims == sweep.dims else _array)(sweep, sweep[key])
+    axes = Figure(figsize=(6.4, 4.2)).subplots()
+    into(axes, sweep, key)
+    return axes.figure
 
 
-def _array(sweep: Sweep, result: Result) -> "Figure":
-    figure = Figure(figsize=(6.4, 4.2))
-    axes = figure.subplots()
+def into(axes: "Axes", sweep: Sweep, key: str, label: str | None = None) -> None:
+    """One result in axes, as in `each`, beside curves that are there; the label is that of a single curve."""
+    if sweep[key].dims == sweep.dims:
+        _scalar(axes, sweep, sweep[key], label)
+    else:
+        _array(axes, sweep, sweep[key])
+
+
+def _array(axes: "Axes", sweep: Sweep, result: Result) -> None:
     *others, last = sweep.dims
     values = sweep.coords[last]
-    if result.abscissa.ndim == 1 and len(result.abscissa) < len(values):
+    if result.abscissa.ndim == 1 and len(result.abscissa) < len(values) and result.abscissa_name != "slip":
         _against_option(axes, sweep, result)
-        return figure
+        return
     shown = _some(len(values))
     for n, point in enumerate(shown):
         at = (0,) * len(others) + (point,)
@@ -58,7 +66,6 @@ def _array(sweep: Sweep, result: Result) -> "Figure":
              **({"yscale": "log", "ylim": (low / 2, high * 2)} if 0 < 100 * low < high else {}))
     _title(axes, sweep, others, len(shown), len(values))
     axes.legend()
-    return figure
 
 
 def _some(count: int) -> "numpy.ndarray":
@@ -80,28 +87,25 @@ def _against_option(axes: "Axes", sweep: Sweep, result: Result) -> None:
     axes.legend()
 
 
-def _scalar(sweep: Sweep, result: Result) -> "Figure":
-    figure = Figure(figsize=(6.4, 4.2))
-    axes = figure.subplots()
+def _scalar(axes: "Axes", sweep: Sweep, result: Result, label: str | None) -> None:
     names, first = sweep.dims[:2], (slice(None),) * min(2, len(sweep.dims)) + (0,) * (len(sweep.dims) - 2)
     value, error = result.value[first], result.error[first]
     ci95 = None if result.ci95 is None else result.ci95[first]
     _title(axes, sweep, sweep.dims[2:])
     if len(names) == 2 and len(value) > FEW:
-        _map(figure, axes, sweep, result, first)
-        return figure
+        _map(axes, sweep, result, first)
+        return
     x = sweep.coords[names[-1]]
     rows = [numpy.s_[:]] if len(names) == 1 else range(len(value))
-    for n, row in enumerate(rows):
-        label = f"{symbol(names[0])} = {sweep.coords[names[0]][n]:g}" if len(names) == 2 else None
+    for n, row in enumerate(rows, len(axes.containers)):
+        label = f"{symbol(names[0])} = {sweep.coords[names[0]][row]:g}" if len(names) == 2 else label
         at = first if len(names) == 1 else (row, *first[1:])
         curve(axes, x, value[row], error[row], n, label, None if ci95 is None else ci95[row], sweep, at)
-    if len(names) == 2:
+    if label:
         axes.legend()
     axes.set(xscale=scale(x), xlabel=_label(sweep, names[-1]), ylabel=_label(sweep, result.key))
     if scale(x) == "log" and x.max() < 100 * x.min():  # powers of ten alone would be one or two
         decades(axes.xaxis)
-    return figure
 
 
 def curve(axes: "Axes", x: "numpy.ndarray", value: "numpy.ndarray", error: "numpy.ndarray", n: int = 0,
@@ -126,7 +130,7 @@ def _edges(values: "numpy.ndarray") -> "numpy.ndarray":
     return numpy.exp(cells_around(numpy.log(values))) if scale(values) == "log" else cells_around(values)
 
 
-def _map(figure: "Figure", axes: "Axes", sweep: Sweep, result: Result, at: tuple) -> None:
+def _map(axes: "Axes", sweep: Sweep, result: Result, at: tuple) -> None:
     value = result.value[at]
     down, across = sweep.dims[:2]
     y, x = sweep.coords[down], sweep.coords[across]
@@ -143,7 +147,7 @@ def _map(figure: "Figure", axes: "Axes", sweep: Sweep, result: Result, at: tuple
     for marked, look in ((sweep.status != "reached", {"linestyle": "", "marker": "x"}), (sweep.concerned, RING)):
         where = numpy.argwhere(marked[at])
         axes.plot(x[where[:, 1]], y[where[:, 0]], color="white", **look)
-    figure.colorbar(mesh, label=_label(sweep, result.key))
+    axes.figure.colorbar(mesh, ax=axes, label=_label(sweep, result.key))
     for axis, values in ((axes.xaxis, x), (axes.yaxis, y)):
         if scale(values) == "log":
             decades(axis)
@@ -160,7 +164,7 @@ def _title(axes: "Axes", sweep: Sweep, held: Sequence[str], shown: int = 0, coun
 
 def _label(sweep: Sweep, name: str) -> str:
     if name in sweep:
-        return WORDS.get(name, name) + units(sweep[name].unit)
+        return words(name) + units(sweep[name].unit)
     return on_axis(name) + units(sweep.units.get(name) or known().get(name, {}).get("unit", ""))
 
 
