@@ -1,14 +1,17 @@
 """The Python package, as a script meets it."""
 
 import contextlib
+import dataclasses
 import inspect
 import io
 import itertools
 import json
+import math
 import os
 import pathlib
 import pickle
 import re
+import statistics
 import subprocess
 import sys
 import tempfile
@@ -712,6 +715,38 @@ class Pictures(Case):
         axes = s.plot(kind="slip_peak")["slip_peak"].axes[0]
         self.assertEqual({line.get_linestyle() for line in axes.lines}, {"None"})
         self.assertEqual(axes.get_xlabel(), "number of the slip")
+
+    def test_fragility_curves(self):
+        """Exceedances that are lognormal, with 1/4 of them below 0."""
+        strength, d, normal = numpy.array([0.5, 1, 1.5, 2, 3]), numpy.array([-2, -0.1, 0.1, 1]), statistics.NormalDist(0.2, 0.5)
+        p = numpy.array([normal.cdf(math.log(s)) for s in strength])
+        cdf = numpy.column_stack([0 * p, p / 4, 1 - 0.75 * p, 1 - 0 * p])
+        s = stickslip.Sweep({"noise_deviation": strength}, {"displacement_cdf(8)": stickslip.Result(
+            "displacement_cdf(8)", cdf, 0 * cdf + 1e-4, "", ("noise_deviation", "distance"), "distance", d)},
+            numpy.full(5, "reached", object), {})
+        axes = s.plot(kind="fragility")["fragility"].axes[0]
+        self.assertEqual(axes.get_legend_handles_labels()[1], [
+            f"$P(|x(8)| > 0.1)$: median {math.exp(0.2):.3g}, deviation of the logarithm 0.5"])
+        line, points = axes.lines[0], axes.lines[1]
+        numpy.testing.assert_allclose(points.get_ydata(), p, rtol=1e-12)
+        numpy.testing.assert_allclose(line.get_ydata(), [normal.cdf(math.log(x)) for x in line.get_xdata()], atol=1e-3)
+
+    def test_atoms_hide_no_density(self):
+        r = stickslip.run(**SMALL, quantities="displacement_distribution", distance=[-1, -0.5, 0.5, 1], start="rest",
+                          time=[1, 2], route="monte_carlo", excursions=100)
+        atom = stickslip.Result("displacement_atom", numpy.array([0.2, 0.1]), numpy.zeros(2), "", ("time",), "time", numpy.array([1, 2]))
+        where = dataclasses.replace(atom, key="displacement_atom_at", value=numpy.zeros(2))
+        r = stickslip.Results({**r, atom.key: atom, where.key: where}, options=r.options)
+        for items in ([r], [r, r]):
+            figure = stickslip.plots.draw(items, kind="displacements")["displacements"]
+            scale = figure.axes[-1]
+            self.assertEqual([line.get_ydata()[0] for line in scale.lines[:2]], [0.2, 0.1])
+            self.assertNotEqual(*(line.get_marker() for line in scale.lines[:2]))
+            self.assertLessEqual(max(stem.get_linewidth()[0] for stem in scale.collections), 1)
+        slips = stickslip.run(**SMALL, quantities="peak", velocity=[0.1, 0.2])
+        figures = [stickslip.plots.draw(items, kind="slips")["slips"] for items in ([slips], [slips, slips])]
+        self.assertEqual(*(figure._suptitle.get_text() for figure in figures))
+        self.assertIn("mu_d", figures[0]._suptitle.get_text())
 
     def test_labels_are_words(self):
         for key, label in (("P_stick", r"probability of sticking $P_\mathrm{stick}$"), ("displacement_cdf(8)", r"$P(x(8) \leq d)$"),

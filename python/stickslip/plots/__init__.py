@@ -33,8 +33,9 @@ KINDS: "dict[str, tuple[Callable[[Results], bool], Callable[[Sequence[Results]],
     "convergence": (lambda r: r.study_kind in studies.CONVERGENCE, studies.convergence),
     "cost": (lambda r: r.study_kind == "cost", studies.cost),
     "correlation_time": (lambda r: "t_corr" in r, curves.correlation_time),  # on request, as the next one
-    "drift": (lambda r: isinstance(r, Sweep) and r.dims == ("bias",), sweeping.drift)}
-ON_REQUEST = ("correlation_time", "drift")
+    "drift": (lambda r: isinstance(r, Sweep) and r.dims == ("bias",), sweeping.drift),
+    "fragility": (lambda r: isinstance(r, Sweep) and len(r.dims) == 1 and any("_cdf(" in key for key in r), sweeping.fragility)}
+ON_REQUEST = ("correlation_time", "drift", "fragility")
 # Kinds that show several files at once.
 TOGETHER = ("spectra", "durations", "slips", "displacements", "arrays", "correlation_time")
 ASK = ("ask the program for density, trajectory, given_force, spectrum with -omega, duration_density, slip with "

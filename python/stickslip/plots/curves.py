@@ -157,8 +157,8 @@ def _panels(items: Sequence[Results], panels: Sequence[Panel]) -> "Figure":
     figure = Figure(figsize=(0.6 + 3.4 * max(columns, 1.4), 0.4 + 2.8 * rows))
     for n, panel in enumerate(panels):
         _panel(figure.add_subplot(rows, columns, n + 1), panel, items)
-    if len(items) == 1:
-        figure.suptitle(title(items[0]), fontsize=10)
+    if len(titles := set(map(title, items))) == 1:
+        figure.suptitle(*titles, fontsize=10)
     return figure
 
 

@@ -86,7 +86,10 @@ def draw_profile(profile: Profile, picture: str | pathlib.Path | None) -> "Figur
     """The rise of twice the misfit, and the limits of confidence intervals."""
     figure = Figure(figsize=(4.4, 3.2))
     axes = figure.subplots()
-    axes.plot(profile.values, profile.rise, "o-", color=COLOURS[0], markersize=3, clip_on=False)  # the least is whole
+    root = numpy.sqrt(numpy.maximum(profile.rise, 0)) * numpy.sign(profile.values - profile.values[profile.rise.argmin()])
+    fine = numpy.linspace(profile.values[0], profile.values[-1], 201)  # roots are nearly straight, as `interval` has it
+    axes.plot(fine, numpy.interp(fine, profile.values, root) ** 2, color=COLOURS[0])
+    axes.plot(profile.values, profile.rise, "o", color=COLOURS[0], markersize=3, clip_on=False)  # the least is whole
     for limit, share in zip(LIMITS, ("68 %", "95 %")):
         axes.axhline(limit, color=COLOURS[4], linewidth=0.8, linestyle="--")
         axes.text(profile.values[0], limit, share, fontsize=8, va="bottom")

@@ -1,5 +1,6 @@
-"""Sweeps: each result, and drift against the bias."""
+"""Sweeps: each result, drift against the bias, and fragility curves."""
 
+import statistics
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -181,3 +182,32 @@ def drift(items: Sequence[Results]) -> "Figure":
     axes.set(xlabel="bias $g$  [force]", ylim=(0, None), xlim=(0, None))
     axes.legend(loc="best")
     return figure
+
+
+@styled
+def fragility(items: Sequence[Results]) -> "Figure":
+    """P(|x(t)| > d) over the strength that was swept, for each d of which the distances have both signs, and the lognormal
+    distribution function nearest to it, whose median and logarithmic standard deviation the legend has."""
+    (sweep,) = items
+    axes, normal = Figure(figsize=(6.4, 4.2)).subplots(), statistics.NormalDist()
+    (name, strength), keys = *sweep.coords.items(), [key for key in sweep if key.startswith("displacement_cdf(")]
+    fine = numpy.linspace(strength.min(), strength.max(), 201)
+    for key in keys:
+        d, cdf, error = sweep[key].abscissa, sweep[key].value, sweep[key].error
+        for high in numpy.flatnonzero((d > 0) & numpy.isin(-d, d)):
+            low, n = numpy.flatnonzero(d == -d[high])[0], len(axes.containers)
+            p, bar = 1 - cdf[:, high] + cdf[:, low], error[:, high] + error[:, low]
+            inside, label = (p > bar) & (p < 1 - bar), f"$P(|x({key[17:-1]})| > {d[high]:g})$"
+            if inside.sum() > 1:
+                z = numpy.array([normal.inv_cdf(one) for one in p[inside]])
+                weights = numpy.exp(-z**2 / 2) / (bar[inside] + 1e-6)
+                slope, begin = numpy.polyfit(numpy.log(strength[inside]), z, 1, w=weights)
+                axes.plot(fine, [normal.cdf(begin + slope * x) for x in numpy.log(fine)], color=COLOURS[n % 5], zorder=1)
+                label += f": median {numpy.exp(-begin / slope):.3g}, deviation of the logarithm {1 / slope:.2g}"
+            axes.errorbar(strength, p, bar, fmt=MARKERS[n % 5], color=COLOURS[n % 5], markersize=4, capsize=2, label=label)
+    if not axes.containers:
+        raise ValueError("fragility needs a sweep with displacement_distribution whose -distance has both signs, such as -0.1,0.1")
+    axes.set(xlabel=_label(sweep, name), ylabel="probability of exceedance", ylim=(-0.02, 1.02))
+    _title(axes, sweep, ())
+    axes.legend(fontsize=8)
+    return axes.figure
