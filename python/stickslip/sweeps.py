@@ -122,10 +122,10 @@ def _gathered(key: str, points: Sequence[Result | None], dims: tuple[str, ...], 
 
 
 def _common(abscissa: "Array") -> "Array":
-    """One abscissa where all points that have one share it."""
+    """One abscissa where all points have it, or the beginning of it, as points with fewer slips do."""
     rows = abscissa.reshape(-1, abscissa.shape[-1])
-    rows = rows[~numpy.isnan(rows).all(axis=1)]
-    return rows[0] if len(rows) and (rows == rows[0]).all() else abscissa
+    longest = rows[numpy.isnan(rows).sum(axis=1).argmin()]
+    return longest if (numpy.isnan(rows) | (rows == longest)).all() else abscissa
 
 
 def from_summary(tree: Mapping[str, Any], name: str = "") -> Sweep:

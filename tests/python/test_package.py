@@ -712,6 +712,13 @@ class Pictures(Case):
         self.assertEqual((axes.get_xlabel(), axes.get_ylabel()), ("number of the slip", "displacement of a slip  [length]"))
         s = stickslip.sweep(**force, mu_s=[1, 1.1, 1.2, 1.3, 1.4, 1.5, 1.6])
         self.assertRaises(KeyError, lambda: s.slips)
+        counts = s["slip_count"].value
+        self.assertLess(counts.min(), counts.max())
+        self.assertEqual(s["slip_end"].abscissa.tolist(), list(range(1, int(counts.max()) + 1)))
+        data = s.to_xarray()
+        self.assertEqual((data.slip_begin.dims, data.slip_peak.dims), (("mu_s", "slip"),) * 2)
+        numpy.testing.assert_array_equal(data.slip_begin.notnull().sum("slip"), counts)
+        self.assertNotIn("", data.attrs.values())
         axes = s.plot(kind="slip_peak")["slip_peak"].axes[0]
         self.assertEqual({line.get_linestyle() for line in axes.lines}, {"None"})
         self.assertEqual(axes.get_xlabel(), "number of the slip")
