@@ -15,7 +15,7 @@ from .live_pictures import NUMBERED, PICTURES, PLACES, LivePictures
 from .needed import needed
 from .partial_drawing import Regions
 from .plots.fields import SLIDE
-from .newest import PARTS, Solver, asked
+from .newest import SLOW, PARTS, Solver, asked
 from .program import BadInput, ProgramError
 from .results import Results
 from .sweeps import Sweep
@@ -61,6 +61,8 @@ class Explorer:
         self.choices: dict[str, str] = {}
         self._begun: dict[str, str] = {}  # choices at first
         self.moved: set[str] = set()  # knobs and choices that the user turned
+        self._beside: dict[str, dict[str, tuple[float, float]]] = {}  # by choice what its word moved: from, to
+        self.note = ""  # what the last choice moved
         self.by_steps = bool(scene.get("delta_per_mu_s"))  # in the file, which then has no delta
         self.stated = {option for option in self.knobs if isinstance(scene.get(option), (int, float))}
         self.asked_at, self.problem = 0.0, ""
@@ -95,7 +97,8 @@ class Explorer:
             height = rest + min(0.0225, room) * len(values)
             place = self.figure.add_axes((0.225, top - height, 0.1, height))
             top -= height + 0.006
-            place.text(0.97, 0.95, option, ha="right", va="top", fontsize=8, color="gray", transform=place.transAxes)
+            place.annotate(option, (1, 1), (-4, -4), "axes fraction", "offset points", ha="right", va="top", fontsize=8,
+                           color="gray")
             self.radios[option] = radio = widgets.RadioButtons(place, values, values.index(value), activecolor=SLIDE)
             for text in radio.labels:
                 text.set_fontsize(8.5)
@@ -176,6 +179,7 @@ class Explorer:
 
     def turn(self, option: str) -> None:
         """A slider was moved; what cannot stay beside it moves along."""
+        self.note = ""
         self.moved.add(option)
         friction = {name: self.value(name) for name in ("mu_s", "mu_d", "mu_s_minus", "mu_d_minus")
                     if self._counts(self.knobs[name])}
@@ -186,14 +190,22 @@ class Explorer:
 
     def choose(self, choice: str, word: str) -> None:
         """A choice was made; what the user has not moved starts with values that work."""
+        before, self.choices[choice], self.note = self.choices[choice], word, ""
         self.moved.add(choice)
-        self.choices[choice] = word
+        for option, (was, became) in self._beside.pop(choice, {}).items():
+            if self.value(option) == became:  # the user left it there
+                self._place(option, was)
+                self.moved.discard(option)
+                self.note = f"{option} = {was:g} again, as before {before};  "
         friction = self.value("mu_s"), self.value("mu_d")
         for option, value in starts(choice, word, list(self.knobs.values()), *friction).items():
             if option not in self.moved:
+                was = self.value(option)
                 self._place(option, value)
                 if not self.knobs[option].choices:  # a word does not have it, so that a file could
                     self.moved.add(option)
+                    self._beside.setdefault(choice, {})[option] = was, self.value(option)
+                    self.note = f"{option} = {self.value(option):g}, with which {word} lets bodies stick and slide;  "
         self._follow()
 
     def restart(self) -> None:
@@ -204,6 +216,8 @@ class Explorer:
         for option, slider in self.sliders.items():
             self._place(option, self.knobs[option].at(slider.valinit))
         self.moved.clear()
+        self._beside.clear()
+        self.note = ""
         self._follow()
 
     def _follow(self) -> None:
@@ -256,7 +270,11 @@ class Explorer:
         return news is not None
 
     def _take(self, part: int, found: Results | Exception) -> None:
-        """Show results of a part, or why there are none."""
+        """Show results of a part, or how long they will take, or why there are none."""
+        if not isinstance(found, Exception) and not found:  # a plan
+            if not self.problem and found.plan["seconds"] > SLOW:
+                self.show(f"computing {PARTS[part][0]}, about {found.plan['seconds']:.0f} s; a slider that is moved ends it")
+            return
         if isinstance(found, Exception):
             self._grey(set(range(len(PARTS))) if part == 0 else {part})
             self.refuse(str(found))
@@ -272,7 +290,7 @@ class Explorer:
         if part + 1 < len(PARTS):
             self.show(f"computing {PARTS[part + 1][0]}")
         elif not self.problem:
-            self.show(f"{time.monotonic() - self.asked_at:.2f} s")
+            self.show(f"{self.note}{time.monotonic() - self.asked_at:.2f} s")
 
     def _grey(self, parts: set[int]) -> None:
         """Show that parts are not of the parameters that the sliders have."""
@@ -374,7 +392,7 @@ def explore(file: pathlib.Path | None, accuracy: float = 1e-4, browser: bool = F
         scene = {**found.options, **found.scene}
     use_backend(browser, port)
     pyplot = needed("matplotlib.pyplot")
-    figure = pyplot.figure(TITLE, figsize=FIGURE)
+    figure = pyplot.figure(TITLE, figsize=FIGURE, dpi=80 if browser else None)  # a page of 640 pixels, and its bars
     worker = Worker()  # which starts the program once
     explorer = Explorer(figure, options, scene, compute=worker.run)
     timer = figure.canvas.new_timer(POLL)

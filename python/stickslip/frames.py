@@ -75,4 +75,4 @@ def to_xarray(results: Results) -> "xarray.Dataset":
         if one.ci95 is not None:
             ends = numpy.asarray(one.ci95, float)
             variables |= {f"{key}_{end}": (dims, ends[..., n], attributes) for n, end in enumerate(("low", "high"))}
-    return needed("xarray").Dataset(variables, coords, dict(results.options))
+    return needed("xarray").Dataset(variables, coords, {name: text for name, text in results.options.items() if text})

@@ -2,6 +2,7 @@
 
 import queue
 import threading
+import time
 import warnings
 from collections.abc import Callable, Mapping
 from typing import Any
@@ -16,6 +17,7 @@ PARTS = (("the stationary distribution", {"quantities": "sticking,moments,densit
 # Accuracy of curves where a better one is asked for. Over the six decades that are shown curves were then within 1 % of
 # their true values, a tenth of a pixel, and distribution functions within 1e-6; quantiles are shown with two digits.
 OF_CURVES = 1e-3
+SLOW = 1.5  # seconds of the first part, from which on the program is asked how long the others will take
 
 
 def asked(options: Mapping[str, Any], part: int) -> dict[str, Any]:
@@ -27,7 +29,8 @@ def asked(options: Mapping[str, Any], part: int) -> dict[str, Any]:
 class Solver(threading.Thread):
     """Computes the newest parameters asked for; what it was computing before is ended.
 
-    Results come in the order of `PARTS`. Without the first part there are no others.
+    Results come in the order of `PARTS`. Without the first part there are no others. After a slow first part each of the
+    others is preceded by its plan, which has no results.
     """
 
     def __init__(self, compute: Callable[..., Results]) -> None:
@@ -80,10 +83,14 @@ class Solver(threading.Thread):
                     return
                 (number, options), self._wanted, self._busy = self._wanted, None, True
                 self._cancel = cancel = threading.Event()
+            begun, slow = time.monotonic(), False
             for part in range(len(PARTS)):
+                slow = slow or part > 0 and time.monotonic() - begun > SLOW
                 try:
                     with warnings.catch_warnings():
                         warnings.simplefilter("ignore")  # errors are drawn
+                        if slow and part > 0:
+                            self._results.put((number, part, self._compute(cancel=cancel, plan=True, **asked(options, part))))
                         found: Results | Exception = self._compute(cancel=cancel, **asked(options, part))
                 except Cancelled:
                     break

@@ -3,6 +3,7 @@
 import functools
 import inspect
 import json
+import keyword
 import os
 import pathlib
 import subprocess
@@ -26,9 +27,35 @@ class WithOptions(str):
         return f"{inspect.cleandoc(str(self))}\n\n{options_text()}".expandtabs(tabsize)
 
 
+class OptionsSignature(inspect.Signature):
+    """A signature that ends with the options of the program, which is asked for them when they are looked at: IPython
+    completes them. help() shows it as it stands in the source."""
+
+    @property
+    def parameters(self) -> Mapping[str, inspect.Parameter]:
+        """By name."""
+        own = super().parameters
+        try:
+            names = [f"{name}_" if keyword.iskeyword(name) else name for name in declared()]
+        except ProgramError:
+            names = []
+        kind = inspect.Parameter.KEYWORD_ONLY
+        options = {name: inspect.Parameter(name, kind, default=None) for name in names if name not in own}
+        ends = {name: parameter for name, parameter in own.items() if parameter.kind is inspect.Parameter.VAR_KEYWORD}
+        return {**{name: parameter for name, parameter in own.items() if name not in ends}, **options, **ends}
+
+    def format(self, **form: Any) -> str:
+        """As in the source."""
+        return str(self)
+
+    def __str__(self) -> str:
+        return str(inspect.Signature([*super().parameters.values()]))
+
+
 def with_options(function: Function) -> Function:
-    """Decorator: the docstring of the function ends with the options of the program."""
+    """Decorator: docstring and signature of the function end with the options of the program."""
     function.__doc__ = WithOptions(function.__doc__ or "")
+    function.__signature__ = OptionsSignature([*inspect.signature(function).parameters.values()])  # type: ignore[attr-defined]
     return function
 
 

@@ -2,10 +2,12 @@
 
 import dataclasses
 import difflib
+import html
 import json
 import math
 import os
 import pathlib
+import warnings
 from collections.abc import Callable, Iterable, Iterator, KeysView, Mapping
 from typing import TYPE_CHECKING, Any
 
@@ -29,7 +31,7 @@ PARTS = ("value", "error", "unit", "ci95", "low", "high", "reason")  # of a resu
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class Result:
-    """One quantity.
+    """One quantity. Arithmetic and comparisons, such as `r["P_stick"] * 2`, are those of the value: errors do not go along.
 
     Attributes
     ----------
@@ -49,6 +51,8 @@ class Result:
         abscissae of their own, `abscissa` has the shape of `value`.
     ci95
         Ends of the 95 % confidence interval in the last dimension, where simulated; else None.
+    sweep
+        The sweep that it belongs to, or None.
     """
 
     key: str
@@ -59,6 +63,7 @@ class Result:
     abscissa_name: str | None = None
     abscissa: "Array | None" = None
     ci95: "tuple[float, float] | Array | None" = None
+    sweep: "Results | None" = None
 
     def __float__(self) -> float:
         return float(self.value)
@@ -69,25 +74,38 @@ class Result:
         return found.copy() if copy else found
 
     def __format__(self, form: str) -> str:
-        """A number in a form such as ".3f"."""
+        """A number in a form such as ".3f"; with its error "S" is 0.15648616(2), and "L" that in \\num{} of siunitx."""
+        if form in ("S", "L"):
+            short = in_short(self.value, self.error)
+            return short if form == "S" else rf"\num{{{short}}}"
         return format(self.value, form) if form else str(self)
 
-    def __repr__(self) -> str:
+    @property
+    def _shown(self) -> str:
         if numpy.ndim(self.value) == 0:
-            shown = f"{to_its_error(self.value, self.error)} +- {self.error:.1e}"
-        else:
-            shown = f"{' x '.join(map(str, numpy.shape(self.value)))} values by {', '.join(self.dims)}"
-        return f"{self.key} = {shown}{f' [{self.unit}]' if self.unit else ''}"
+            return f"{to_its_error(self.value, self.error)} +- {self.error:.1e}"
+        return f"{' x '.join(map(str, numpy.shape(self.value)))} values by {', '.join(self.dims)}"
+
+    def __repr__(self) -> str:
+        return f"{self.key} = {self._shown}{f' [{self.unit}]' if self.unit else ''}"
+
+    def _repr_html_(self) -> str:
+        if numpy.ndim(self.value) != 1 or numpy.ndim(self.abscissa) != 1:
+            return html.escape(repr(self))
+        return _table((self.abscissa_name or "", self.key + f" [{self.unit}]" * bool(self.unit), "error"), [
+            (f"{x:g}", to_its_error(value, error), f"{error:.1e}")
+            for x, value, error in zip(self.abscissa, self.value, self.error)])
 
     def plot(self, axes: "Axes | None" = None, **look: Any) -> "Axes":
-        """Draw an array against what it depends on, with its errors or confidence intervals.
+        """Draw an array against what it depends on, or a result of a sweep against the swept options, with errors or
+        confidence intervals.
 
         Parameters
         ----------
         axes
             Where to; without it, the current ones of `matplotlib.pyplot`. Their labels are set, their scales are not.
         look
-            `colour`, `style` and `label` of the curve.
+            `colour`, `style` and `label` of the curve; of a sweep over one option `label`.
 
         Returns
         -------
@@ -96,12 +114,22 @@ class Result:
         Raises
         ------
         ValueError
-            If this is a number, or an array of a sweep, which `Sweep.plot` draws.
+            If this is a number.
         """
-        if numpy.ndim(self.value) != 1 or self.abscissa is None:
-            raise ValueError(f"{self.key}: is no array over one abscissa; plot() of the results draws sweeps, and "
-                             "matplotlib's errorbar numbers")
+        if self.sweep is None and (numpy.ndim(self.value) != 1 or self.abscissa is None):
+            raise ValueError(f"{self.key}: is no array over one abscissa; matplotlib's errorbar draws numbers")
         return viewed("picture", self, axes, **look)
+
+
+def _of_values(name: str) -> Callable[..., Any]:
+    def operation(self: Result, *other: Any) -> Any:
+        return getattr(numpy.asarray(self), name)(*map(numpy.asarray, other))
+    return operation
+
+
+for _name in ("neg", "abs", "lt", "le", "gt", "ge", *(side + name for side in ("", "r") for name in (
+        "add", "sub", "mul", "truediv", "pow"))):
+    setattr(Result, f"__{_name}__", _of_values(f"__{_name}__"))
 
 
 class Results(Mapping):
@@ -183,6 +211,30 @@ class Results(Mapping):
                 if getattr(self, part)]
         return f"<{type(self).__name__} without scalars and arrays; there are {', '.join(held) or 'options'}>"
 
+    def _repr_html_(self) -> str:
+        """A table, as notebooks show it."""
+        rows = [(key, one._shown, one.unit) for key, one in self.items()]
+        return _table(("", "value +- error", "unit"), rows) if rows else html.escape(repr(self))
+
+    def _ipython_key_completions_(self) -> list[str]:
+        return list(self)
+
+    @property
+    def slips(self) -> "Array":
+        """The slips under a given force, a row each: begin, end [time], displacement and peak velocity. The fields of the
+        array have these names; `pandas.DataFrame(r.slips)` is a table.
+
+        Raises
+        ------
+        KeyError
+            If these are no results of one run under a given force.
+        """
+        if "slip_count" not in self or self["slip_count"].dims:
+            raise KeyError("slips: one run with quantities=\"given_force\" has them; slip_begin and so on of a sweep are arrays")
+        names = ("begin", "end", "displacement", "peak")
+        columns = [self[f"slip_{name}"].value for name in names] if "slip_begin" in self else numpy.empty((4, 0))
+        return numpy.array(list(zip(*columns)), [(name, float) for name in names])
+
     @property
     def reached(self) -> bool:
         """Whether the accuracy asked for was reached."""
@@ -194,8 +246,8 @@ class Results(Mapping):
         Parameters
         ----------
         picture
-            Where to save; of several figures each has its name appended, those of a sweep go into a folder of that
-            name without its ending.
+            Where to save; of several figures each has its name appended. Those of a sweep, one for each result, go into
+            a folder: sweep.png and sweep both name the folder sweep. With `kind` a sweep has one figure, saved there.
         kind
             One of `stickslip.plots.KINDS`, or a key of a sweep; without it, all that fit.
 
@@ -259,7 +311,8 @@ class Results(Mapping):
         Parameters
         ----------
         path
-            Ends with .json. Fields (density, path, modes) are in HDF5 files alone, which `run(keep=...)` leaves.
+            Ends with .json. Fields (density, path, modes) are in HDF5 files alone, which `run(keep=...)` leaves; a warning
+            names those that are left out.
 
         Raises
         ------
@@ -272,6 +325,8 @@ class Results(Mapping):
         if not self.summary:
             raise ValueError(f"results of {self.name or 'a file'} have no summary; copy the file that they come from")
         path.write_text(json.dumps(self.summary, indent=1) + "\n")
+        if left := ", ".join(part for part in ("density", "trajectory", "modes") if getattr(self, part)):
+            warnings.warn(f"{path}: JSON does not hold {left}; run(keep=...) leaves HDF5, which does", UserWarning, stacklevel=2)
 
 
 def to_its_error(value: float, error: float) -> str:
@@ -280,6 +335,25 @@ def to_its_error(value: float, error: float) -> str:
         return f"{value:.17g}" if error == 0 else f"{value:.7g}"
     digits = math.floor(math.log10(abs(value))) - math.floor(math.log10(error)) + 1
     return f"{value:.{min(max(digits, 1), 17)}g}"
+
+
+def in_short(value: float, error: float) -> str:
+    """A number with the first digit of its error in brackets: 0.15648616(2), 1.3(2)e-09. All digits of what is exact."""
+    if not (math.isfinite(error) and error > 1e-16 * abs(value)):
+        return to_its_error(value, error)
+    power = math.floor(math.log10(max(abs(value), error)))
+    scale = 0 if -5 < power < 15 else power
+    digit, place = (int(part) for part in f"{error:.0e}".split("e"))
+    decimals = max(scale - place, 0)
+    digits = f"{round(value, -place) / 10**scale:.{decimals}f}({digit * 10**max(place - scale, 0)})"
+    return digits + (f"e{scale:+03d}" if scale else "")
+
+
+def _table(head: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
+    """A table as HTML."""
+    def line(cells: Iterable[str], mark: str) -> str:
+        return "<tr>" + "".join(f"<{mark}>{html.escape(cell)}</{mark}>" for cell in cells) + "</tr>"
+    return f"<table>{line(head, 'th')}{''.join(line(row, 'td') for row in rows)}</table>"
 
 
 def closest(name: str, names: Iterable[str]) -> str | None:

@@ -71,11 +71,10 @@ def _in_unit_of(record: Record, acceleration: float | str) -> float:
 
 def table(results: Results) -> str:
     """What a block did, a line for each slip."""
-    keys = ("slip_begin", "slip_end", "slip_displacement", "slip_peak")
+    slips = results.slips
     lines = [repr(results[key]) for key in ("final_displacement", "largest_displacement", "largest_speed")]
-    if "slip_begin" not in results:
+    if not len(slips):
         return "\n".join([*lines, "no slips"])
-    heads = [f"{key.removeprefix('slip_')} [{results[key].unit}]" for key in keys]
-    rows = zip(*(results[key].value for key in keys))
+    heads = [f"{name} [{results[f'slip_{name}'].unit}]" for name in slips.dtype.names]
     return "\n".join([*lines, "slip" + "".join(f"{head:>24}" for head in heads), *(
-        f"{n:4}" + "".join(f"{value:24.10g}" for value in row) for n, row in enumerate(rows, 1))])
+        f"{n:4}" + "".join(f"{value:24.10g}" for value in row) for n, row in enumerate(slips, 1))])

@@ -1,6 +1,7 @@
 """Results of a sweep, as arrays over the swept options."""
 
 import csv
+import dataclasses
 import math
 import pathlib
 from collections.abc import Mapping, Sequence
@@ -42,7 +43,7 @@ class Sweep(Results):
     def __init__(self, coords: "Mapping[str, Array]", results: Mapping[str, Result], status: "Array",
                  messages: Mapping[tuple[int, ...], str], *, units: Mapping[str, str] | None = None,
                  point_warnings: Mapping[tuple[int, ...], Sequence[str]] | None = None, **parts: Any) -> None:
-        super().__init__(results, **parts)
+        super().__init__({key: dataclasses.replace(one, sweep=self) for key, one in results.items()}, **parts)
         self.point_warnings = {index: list(texts) for index, texts in (point_warnings or {}).items() if texts}
         self.coords = dict(coords)
         self.dims = tuple(self.coords)
@@ -121,10 +122,10 @@ def _gathered(key: str, points: Sequence[Result | None], dims: tuple[str, ...], 
 
 
 def _common(abscissa: "Array") -> "Array":
-    """One abscissa where all points that have one share it."""
+    """One abscissa where all points have it, or the beginning of it, as points with fewer slips do."""
     rows = abscissa.reshape(-1, abscissa.shape[-1])
-    rows = rows[~numpy.isnan(rows).all(axis=1)]
-    return rows[0] if len(rows) and (rows == rows[0]).all() else abscissa
+    longest = rows[numpy.isnan(rows).sum(axis=1).argmin()]
+    return longest if (numpy.isnan(rows) | (rows == longest)).all() else abscissa
 
 
 def from_summary(tree: Mapping[str, Any], name: str = "") -> Sweep:

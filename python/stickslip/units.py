@@ -17,7 +17,7 @@ KINDS: dict[str, tuple[str, dict[str, float]]] = {
 OTHERS = ("n", "kn", "mn", "un", "nn", "pn", "lbf", "kgf", "pa", "kpa", "mpa", "n/kg", "n/m", "v", "mv", "uv", "a", "ma",
           "counts", "count", "hz", "deg", "rad", "rad/s", "rad/s^2", "1", "-", "")
 _WORDS = (("milliseconds?|millisec|millis|msecs?", "ms"), ("microseconds?|microsec|micros|usecs?", "us"),
-          ("nanoseconds?|nanosec|nsecs?", "ns"), ("seconds?|secs?|sekunden?|secondes?|segundos?|secondi", "s"),
+          ("nanoseconds?|nanosec|nsecs?", "ns"), ("seconds?|secs?|sekunden?|secondes?|seg|segundos?|secondi", "s"),
           ("minutes?|mins?|minuten", "min"), ("hours?|hrs?|stunden?|heures?", "h"), ("days?|tage?|jours?", "d"),
           ("centimet(?:er|re)s?|cms", "cm"), ("millimet(?:er|re)s?", "mm"), ("micromet(?:er|re)s?|microns?", "um"),
           ("nanomet(?:er|re)s?", "nm"), ("kilomet(?:er|re)s?", "km"), ("met(?:er|re)s?", "m"), ("feet|foot", "ft"),

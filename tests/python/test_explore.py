@@ -8,6 +8,7 @@ import tempfile
 import threading
 import time
 import unittest
+import unittest.mock
 
 import matplotlib
 import numpy
@@ -19,7 +20,7 @@ sys.path.insert(0, str(SOURCES / "python"))
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import stickslip
-from stickslip import __main__, cases, explore, knobs, live_pictures
+from stickslip import __main__, cases, explore, knobs, live_pictures, newest
 from stickslip.program import BadInput, Cancelled
 
 COARSE = {"accuracy": 1e-2}
@@ -336,6 +337,37 @@ class Knobs(Case):
         made.restart()
         self.assertEqual(made.scene(), begun)
         self.assertEqual(made.sliders["mu_s_minus"].valtext.get_text(), "not given")
+
+    def test_what_a_word_moved_goes_back_with_it(self):
+        made = self.explorer(compute=refusing)
+        made.choose("noise", "telegraph")
+        self.assertIn("bias = 0.3, with which telegraph", made.note)
+        made.choose("noise", "ou")
+        self.assertEqual(made.scene()["bias"], 0)
+        self.assertIn("bias = 0 again, as before telegraph", made.note)
+        made.choose("noise", "telegraph")
+        made.sliders["bias"].set_val(0.7)  # by the user
+        made.choose("noise", "ou")
+        self.assertEqual((made.scene()["bias"], made.note), (0.7, ""))
+
+    def test_slow_parts_say_how_long_they_take(self):
+        shown = []
+
+        def slow(cancel, **options):
+            if options.get("plan"):
+                return stickslip.Results({}, plan={"seconds": 34.4})
+            shown.append(made.status.get_text())
+            return stickslip.run(cancel=cancel, **options)
+
+        with unittest.mock.patch.object(newest, "SLOW", 0):
+            made = None
+            made = self.explorer(compute=lambda **options: slow(**options) if made else refusing(**options))
+            said = []
+            made.show = lambda text, color="black", show=made.show: (said.append(text), show(text, color))
+            made.sliders["mu_d"].set_val(0.6)
+            self.settled(made)
+        self.assertIn("computing the spectrum, about 34 s; a slider that is moved ends it", said)
+        self.assertFalse(any("distribution, about" in text for text in said))
 
     def test_what_is_not_given_is_left_out_until_it_is_moved(self):
         made = self.explorer(compute=refusing)

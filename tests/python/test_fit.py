@@ -187,7 +187,11 @@ class Likelihood(Fits):
             self.assertAlmostEqual(one, other, delta=0.1 * fit.errors["tau"])
         self.assertEqual(profile.rise.min(), 0)
         self.assertEqual(profile.interval(0.9999)[0], -math.inf)
-        profile.plot(self.folder / "profile.png")
+        curve, points = profile.plot(self.folder / "profile.png").axes[0].lines[:2]
+        self.assertEqual(points.get_ydata().tolist(), profile.rise.tolist())
+        middle = (profile.values[0] + profile.values[1]) / 2  # of a parabola nearly
+        expected = (numpy.sqrt(profile.rise[:2]).mean()) ** 2
+        self.assertAlmostEqual(numpy.interp(middle, curve.get_xdata(), curve.get_ydata()), expected, delta=0.01 * expected)
         fit.plot(self.folder / "fit.png")
         for name in ("profile.png", "fit.png"):
             self.assertTrue((self.folder / name).read_bytes().startswith(PNG))

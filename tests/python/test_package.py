@@ -1,14 +1,17 @@
 """The Python package, as a script meets it."""
 
 import contextlib
+import dataclasses
 import inspect
 import io
 import itertools
 import json
+import math
 import os
 import pathlib
 import pickle
 import re
+import statistics
 import subprocess
 import sys
 import tempfile
@@ -120,6 +123,28 @@ class Runs(Case):
         self.assertLess(r["P_stick"].value, high)
         self.assertEqual(r["F_slide"].ci95.shape, (2, 2))
         self.assertIsNone(stickslip.run(**SMALL)["P_stick"].ci95)
+
+    def test_results_in_a_notebook(self):
+        r = stickslip.run(**SMALL, quantities="sticking,spectrum", omega=[0.1, 1])
+        p, s = r["P_stick"], r["S_v"]
+        self.assertEqual((p * 2, 1 - p, p / 2, -p, p < 1), (2 * p.value, 1 - p.value, p.value / 2, -p.value, True))
+        for found in (s * p, p * s, s * p.value, s.value * p):
+            self.assertEqual(found.tolist(), (s.value * p.value).tolist())
+        for value, error, short in ((0.15648616, 2e-8, "0.15648616(2)"), (1.3e-9, 2.2e-10, "1.3(2)e-09"), (4938846, 59, "4938850(60)"),
+                                    (0.99999, 0.0096, "1.00(1)"), (1, 0, "1"), (1.23e20, 4e17, "1.230(4)e+20"), (0.001, 0.03, "0.00(3)")):
+            result = stickslip.Result("a", value, error)
+            self.assertEqual((f"{result:S}", f"{result:L}"), (short, rf"\num{{{short}}}"))
+        self.assertEqual(r._ipython_key_completions_(), list(r))
+        self.assertIn(f"<td>P_stick</td><td>{results.to_its_error(p.value, p.error)} +- {p.error:.1e}</td>", r._repr_html_())
+        self.assertIn("<tr><th>omega</th><th>S_v [velocity^2*time]</th><th>error</th></tr><tr><td>0.1</td>", s._repr_html_())
+        for function in (stickslip.run, stickslip.sweep, stickslip.map, stickslip.newmark):
+            signature = inspect.signature(function)
+            self.assertTrue({"mu_d", "lambda_"} <= set(signature.parameters))
+            self.assertLess(len(str(signature)), 1000)
+            with self.fake("exit 1"):
+                self.assertNotIn("mu_d", inspect.signature(function).parameters)
+        with self.assertWarnsRegex(UserWarning, "JSON does not hold density; "):
+            stickslip.run(**SMALL, quantities="density").save(self.folder / "r.json")
 
     def test_words_of_options(self):
         self.assertEqual(program.words_of({
@@ -662,6 +687,78 @@ class Pictures(Case):
         self.assertRaisesRegex(ValueError, "S_0", r["S_0"].plot, axes)
         self.assertIn('<img src="data:image/png;base64,', r.plot()._repr_html_())
         self.assertIn("density", stickslip.plots.KINDS)
+        axes = style.Figure().subplots()
+        for drag in (1, 2):
+            s = stickslip.sweep(tau=[1, 2], delta=0.5, drag_coefficient=drag, quantities="noise_law")
+            self.assertIs(s["E_X2"].plot(axes, label=f"drag {drag}"), axes)
+        self.assertEqual(axes.get_legend_handles_labels()[1], ["drag 1", "drag 2"])
+        self.assertNotEqual(*(one.lines[0].get_color() for one in axes.containers))
+        self.assertEqual(axes.get_title(), "")  # of neither
+        s = stickslip.sweep(mu_d=[0.1, 0.2, 0.3, 0.4, 0.5, 0.6], tau=[1, 2], delta=0.5, quantities="noise_law")
+        axes = style.Figure().subplots()
+        s["E_X2"].plot(axes)
+        self.assertEqual(len(axes.figure.axes), 2)  # a map with its scale
+        s.plot(self.folder / "maps")
+        self.assertTrue((self.folder / "maps" / "E_X2.png").is_file())
+
+    def test_slips_are_a_table_and_points(self):
+        force = {"quantities": "given_force", "force_file": SOURCES / "options" / "given_force.csv"}
+        r = stickslip.run(**force)
+        self.assertEqual(r.slips.dtype.names, ("begin", "end", "displacement", "peak"))
+        self.assertEqual(r.slips["end"].tolist(), r["slip_end"].value.tolist())
+        self.assertEqual(len(stickslip.run(**force, force_scale=1e-9).slips), 0)
+        axes = r["slip_displacement"].plot(style.Figure().subplots())
+        self.assertEqual(axes.lines[0].get_linestyle(), "None")
+        self.assertEqual((axes.get_xlabel(), axes.get_ylabel()), ("number of the slip", "displacement of a slip  [length]"))
+        s = stickslip.sweep(**force, mu_s=[1, 1.1, 1.2, 1.3, 1.4, 1.5, 1.6])
+        self.assertRaises(KeyError, lambda: s.slips)
+        counts = s["slip_count"].value
+        self.assertLess(counts.min(), counts.max())
+        self.assertEqual(s["slip_end"].abscissa.tolist(), list(range(1, int(counts.max()) + 1)))
+        data = s.to_xarray()
+        self.assertEqual((data.slip_begin.dims, data.slip_peak.dims), (("mu_s", "slip"),) * 2)
+        numpy.testing.assert_array_equal(data.slip_begin.notnull().sum("slip"), counts)
+        self.assertNotIn("", data.attrs.values())
+        axes = s.plot(kind="slip_peak")["slip_peak"].axes[0]
+        self.assertEqual({line.get_linestyle() for line in axes.lines}, {"None"})
+        self.assertEqual(axes.get_xlabel(), "number of the slip")
+
+    def test_fragility_curves(self):
+        """Exceedances that are lognormal, with 1/4 of them below 0."""
+        strength, d, normal = numpy.array([0.5, 1, 1.5, 2, 3]), numpy.array([-2, -0.1, 0.1, 1]), statistics.NormalDist(0.2, 0.5)
+        p = numpy.array([normal.cdf(math.log(s)) for s in strength])
+        cdf = numpy.column_stack([0 * p, p / 4, 1 - 0.75 * p, 1 - 0 * p])
+        s = stickslip.Sweep({"noise_deviation": strength}, {"displacement_cdf(8)": stickslip.Result(
+            "displacement_cdf(8)", cdf, 0 * cdf + 1e-4, "", ("noise_deviation", "distance"), "distance", d)},
+            numpy.full(5, "reached", object), {})
+        axes = s.plot(kind="fragility")["fragility"].axes[0]
+        self.assertEqual(axes.get_legend_handles_labels()[1], [
+            f"$P(|x(8)| > 0.1)$: median {math.exp(0.2):.3g}, deviation of the logarithm 0.5"])
+        line, points = axes.lines[0], axes.lines[1]
+        numpy.testing.assert_allclose(points.get_ydata(), p, rtol=1e-12)
+        numpy.testing.assert_allclose(line.get_ydata(), [normal.cdf(math.log(x)) for x in line.get_xdata()], atol=1e-3)
+
+    def test_atoms_hide_no_density(self):
+        r = stickslip.run(**SMALL, quantities="displacement_distribution", distance=[-1, -0.5, 0.5, 1], start="rest",
+                          time=[1, 2], route="monte_carlo", excursions=100)
+        atom = stickslip.Result("displacement_atom", numpy.array([0.2, 0.1]), numpy.zeros(2), "", ("time",), "time", numpy.array([1, 2]))
+        where = dataclasses.replace(atom, key="displacement_atom_at", value=numpy.zeros(2))
+        r = stickslip.Results({**r, atom.key: atom, where.key: where}, options=r.options)
+        for items in ([r], [r, r]):
+            figure = stickslip.plots.draw(items, kind="displacements")["displacements"]
+            scale = figure.axes[-1]
+            self.assertEqual([line.get_ydata()[0] for line in scale.lines[:2]], [0.2, 0.1])
+            self.assertNotEqual(*(line.get_marker() for line in scale.lines[:2]))
+            self.assertLessEqual(max(stem.get_linewidth()[0] for stem in scale.collections), 1)
+        slips = stickslip.run(**SMALL, quantities="peak", velocity=[0.1, 0.2])
+        figures = [stickslip.plots.draw(items, kind="slips")["slips"] for items in ([slips], [slips, slips])]
+        self.assertEqual(*(figure._suptitle.get_text() for figure in figures))
+        self.assertIn("mu_d", figures[0]._suptitle.get_text())
+
+    def test_labels_are_words(self):
+        for key, label in (("P_stick", r"probability of sticking $P_\mathrm{stick}$"), ("displacement_cdf(8)", r"$P(x(8) \leq d)$"),
+                           ("displacement_cosine", r"$E[\cos k x(t)]$"), ("pi(v^2)", "pi(v^2)")):
+            self.assertEqual(style.words(key), label)
 
     def test_panels_of_arrays(self):
         options = {**SMALL, "accuracy": 1e-2, "tilt": [-0.2, 0, 0.2], "time": [1, 2], "wavenumber": [0, 1]}
@@ -671,8 +768,8 @@ class Pictures(Case):
         rate = panels["rate function $I(u)$  [1/time]"]
         self.assertEqual(rate.lines[0].get_xdata().tolist(), r["tilted_velocity"].value.tolist())
         self.assertIn("velocity", rate.get_xlabel())
-        labels = panels["displacement_cosine"].get_legend_handles_labels()[1]
-        self.assertEqual(labels, ["displacement_cosine(1)", "displacement_cosine(2)"])
+        labels = panels[r"$E[\cos k x(t)]$"].get_legend_handles_labels()[1]
+        self.assertEqual(labels, [r"$E[\cos k x(1)]$", r"$E[\cos k x(2)]$"])
 
     def test_sweeps_say_what_was_not_swept(self):
         s = stickslip.sweep(mu_d=[0.25, 0.5], tau=[1, 2], delta=[0.5, 0.25], quantities="sticking", accuracy=1e-1)

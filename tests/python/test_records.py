@@ -80,6 +80,8 @@ class Text(Case):
             self.assertTrue(any("ms became s" in note for note in record.notes))
             self.assertEqual(any(f"{unit} became m/s^2: times {factor:g}" in note for note in record.notes), factor != 1)
         self.same(self.read(columns(head="t,acc_g")), "m/s^2", G)
+        for head in ("t,a x 10^-3 g", "t,a*1000 [g]", "t,a (1e-3 g)"):
+            self.assertIn("values are as in the file", " ".join(self.read(columns(head=head)).notes))
         self.same(self.read(columns(head="t,force [N]")), "N")
         self.same(self.read(columns(head="t,a"), unit="gal"), "m/s^2", 0.01)
         self.same(self.read(columns(head="# made today\n# time [s], a [g]")), "m/s^2", G)
@@ -407,6 +409,9 @@ class Descriptions(Case):
         self.same(self.read(self.smc(long) + remains, "e.smc"), "m/s^2", 0.01, 0.02 * numpy.arange(len(long)), long, 1e-7)
         self.same(self.read(self.smc(VALUE, "0 UNKNOWN"), "f.smc", unit="gal"), "m/s^2", 0.01, within=1e-7)
         self.refused("is a spectrum", self.smc(VALUE, "5 RESPONSE"), "g.smc")
+        numbered = self.smc(VALUE).replace("|5 comments of 3\n", "").split("\n")  # no comments, and a year alone on a line
+        numbered[2], numbered[12] = "1979", numbered[12].replace(f"{numbered[12].split()[-1]:>10}", f"{0:>10}")
+        self.same(self.read("\n".join(numbered), "h.smc"), "m/s^2", 0.01, within=1e-7)
         self.refused("holds 7 of the 8 samples", self.smc(VALUE).replace(" 6.2500E-2", ""), "c.smc")
         self.refused("360: is a velocity, no force or acceleration; differentiate=True", self.smc(VALUE, "3 VELOCITY"), "d.smc")
 
@@ -520,7 +525,7 @@ class Descriptions(Case):
         for line in ("The units are (g)", "ACCELERATION TIME HISTORY IN UNITS OF (G)", "Units: g",
                      "ACCELERATION IN UNITS OF G.", "Acceleration in g"):
             self.same(self.read(text(line), "a.AT2"), "m/s^2", G, within=1e-6)
-        for step in ("DT= 20 MSEC", "dt=20 ms", "DT=.02", "DT= 2.0E-02 SEC"):
+        for step in ("DT= 20 MSEC", "dt=20 ms", "DT=.02", "DT= 2.0E-02 SEC", "DT:  .0200 SEC"):
             self.same(self.read(text(line).replace("DT=   .0200 SEC", step), "a.AT2"), "m/s^2", G, within=1e-6)
         self.refused("is a velocity, no force or acceleration; differentiate=True takes its derivative",
                      text("VELOCITY TIME SERIES IN UNITS OF CM/S"),
@@ -568,12 +573,12 @@ class Times(Case):
                     record = self.read(columns(head=head))
                     numpy.testing.assert_allclose(record.time, factor * TIME, rtol=1e-12)
         for head in ("t_ms,F", "time ms,F", "timeMs,F", "tms,F", "millis,F", "elapsed_ms,F", "ms;N".replace(";", ","),
-                     "timestamp_ms,F"):
+                     "timestamp_ms,F", "time..ms.,F", "time.ms,F", "time - ms,F"):
             numpy.testing.assert_allclose(self.read(columns(head=head)).time, 1e-3 * TIME, rtol=1e-12)
 
     def test_units_of_time_that_are_not_known(self):
         for head in ("time [frames],F", "Time,Force\nticks,N", "t/sampl,F/N", "time msek,F", "time since start,F",
-                     "Time\t[0.1 s],F"):
+                     "Time\t[0.1 s],F", "t x 10^-3 s,F", "Time*1000,F", "t × 1000 [s],F", "time (10^-3 s),F"):
             self.refused("time_unit", columns(head=head))
             for options in ({"time_unit": "ms", "column": 1}, {"step": 2e-5, "column": 1}):
                 self.same(self.read(columns(head=head), **options), self.read(columns(head=head), **options).unit,
@@ -585,7 +590,7 @@ class Times(Case):
         stamps = "timestamp,F\n" + "".join(f"{1700000000000 + 20 * n},{v}\n" for n, v in enumerate(VALUE))
         self.refused('begins at 1700000000000 without a unit; give time_unit="ms"', stamps)
         self.same(self.read(stamps, time_unit="ms"))
-        for name in ("Sample no.", "#", "", "Unnamed: 0", "index"):
+        for name in ("Sample no.", "#", "", "Unnamed: 0", "index", "ticks"):
             self.refused("counts samples; give the sampling interval", columns(head=f"{name},F"))
         counts = "sample,F\n" + "".join(f"{n},{v}\n" for n, v in enumerate(VALUE))
         self.refused("sample: counts samples; give the sampling interval", counts)

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     Array = numpy.ndarray
 numpy = needed("numpy")
 
-COUNTS = re.compile(r"(?:#|unnamed|index|samples?|frames?|points?|number|no|n|i|nr|id|row|count|step|timestep)(?![a-z]).*|",
+COUNTS = re.compile(r"(?:#|unnamed|index|samples?|frames?|points?|number|no|n|i|nr|id|row|count|ticks?|step|timestep)(?![a-z]).*|",
                     re.IGNORECASE)  # are no times
 EPOCH = 1e8  # times beyond it [s] count from a date
 

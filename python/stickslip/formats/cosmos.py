@@ -14,7 +14,7 @@ from ..units import in_si, plain_unit
 from .reading import Column, Format, block, counted, kind_in, lasting, numbers
 
 HEADER = re.compile(r"\s*(\d+)\s+(integer|real)-header values follow on\s+(\d+)\s+lines.*?format\s*=\s*(.*)", re.IGNORECASE)
-SAMPLES = re.compile(r"\s*(\d+)\s+(.*?)\s*pts,\s*approx\s*([\d.]+)\s*secs,\s*units\s*=\s*(.*?)\s*(?:\(\s*(\d+)\s*\))?\s*,?\s*"
+SAMPLES = re.compile(r"\s*(\d+)\s+(.*?)\s*pts,\s*approx\s*([\d.]+)\s*secs?,\s*units\s*=\s*(.*?)\s*(?:\(\s*(\d+)\s*\))?\s*,?\s*"
                      r"format\s*=\s*(.*)", re.IGNORECASE)
 DIRECTION = re.compile(r"\s*sta cha\w*:?\s*(.*?)\s*\(rcrdr", re.IGNORECASE)
 CODES = {2: "g", 4: "cm/s^2", 5: "cm/s", 6: "cm", 7: "in/s^2", 8: "in/s", 9: "in", 10: "gal", 11: "mg", 12: "ug", 50: "counts",
@@ -65,4 +65,4 @@ def _read(lines: list[str]) -> list[Column]:
 
 FORMAT = Format("COSMOS", {
     'a line "... Real-header values follow on ... lines, Format="': r"real-header values follow on.*format\s*=",
-    'a line "... pts, approx ... secs, units=..., Format="': r"pts,\s*approx.*secs,\s*units\s*=.*format\s*="}, _read)
+    'a line "... pts, approx ... secs, units=..., Format="': r"pts,\s*approx.*secs?,\s*units\s*=.*format\s*="}, _read)

@@ -17,7 +17,7 @@ UNITS = [re.compile(pattern, re.IGNORECASE) for pattern in (
 def _read(lines: list[str]) -> list[Column]:
     at = next(n for n, line in enumerate(lines) if "NPTS" in line.upper())
     stated = {name: re.search(pattern, lines[at], re.IGNORECASE) for name, pattern in (
-        ("NPTS", r"NPTS\s*=\s*(\d+)"), ("DT", rf"DT\s*=\s*({NUMBER})\s*([a-z]*)"))}
+        ("NPTS", r"NPTS\s*[=:]\s*(\d+)"), ("DT", rf"DT\s*[=:]\s*({NUMBER})\s*([a-z]*)"))}
     plain = re.match(rf"\s*(\d+)\s+({NUMBER})", lines[at])  # older files: 5366 0.0100 NPTS, DT
     if not (stated["NPTS"] or plain):
         raise ValueError(f"line {at + 1}: {lines[at].strip()}: needs NPTS= and DT=, such as NPTS= 5366, DT= .01 SEC")

@@ -7,15 +7,15 @@ follow the values.
 
 import re
 
-from .reading import FLAGS, Column, Format, block, counted, kind_in, numbers, numeric, pairs
+from .reading import FLAGS, Column, Format, block, counted, kind_in, numbers, pairs
 
-INTEGERS, NUMBERS, ROW, NONE = 48, 50, 8, 1e38
+INTEGERS, NUMBERS, LINES, ROW, NONE = 48, 50, 16, 8, 1e38  # LINES: of integers and numbers
 UNITS = {"acceleration": "cm/s^2", "velocity": "cm/s", "displacement": "cm"}
 
 
 def _read(lines: list[str]) -> list[Column]:
-    first = next(n for n in range(1, len(lines)) if numeric(lines[n]))
-    described = block(lines, first)
+    first = next(n for n in range(1, len(lines)) if len(block(lines[:n + LINES], n)) == LINES)
+    described = lines[first:first + LINES]
     header = numbers(described)
     counted(header, INTEGERS + NUMBERS, "the description of the format")
     comments, count, rate = int(header[15]), int(header[16]), header[INTEGERS + 1]

@@ -29,7 +29,8 @@ CLOCK = re.compile(r"(\d+):([0-5]\d):([0-5]\d(?:[.,]\d+)?)")
 SPLIT_DATE = re.compile(r"(\d{4}[-/]\d\d[-/]\d\d)\s+(?=\d\d:\d\d)")
 IN_BRACKETS = re.compile(r"(.*?)[\s_,/]*(?:\[(.*)\]|\((.*)\))\s*")
 BRACKETED = re.compile(r"[\[(].*[\])]")
-APART = re.compile(r"(?<=\w)(?:\s+in\s+|\s*/\s*|[\s_,]+)(?=\S)")
+APART = re.compile(r"(?<=\w)(?:\s+in\s+|\s*/\s*|\s+-\s+|[\s_,.:|]+)(?=\S)")  # R makes "time..ms." of "time (ms)"
+FACTOR = re.compile(r"\s*((?:[*×]|(?<=\s)x)\s*1[\d.e^+-]+|\b10\^.*)", re.IGNORECASE)
 AMBIGUOUS = ("in", "d", "h", "min", "-", "1")  # are words or parts of names, too
 NO_NAME = re.compile(rf"{NUMBER}[,;]?|.*=")  # words of a sentence or of a header of facts
 NAMES_OF_TIME = ("t", "time", "times", "timestamp", "datetime", "date", "zeit", "temps", "elapsed", "clock", "tiempo", "tempo")
@@ -175,13 +176,16 @@ def _proper(head: Sequence[str]) -> bool:
 
 
 def name_and_unit(name: str) -> tuple[str, str]:
-    """Name of a column and the unit that stands in brackets or behind it: "a [g]", "a_g", "t/ms", "time in ms", "timeMs"."""
+    """Name of a column and the unit that stands in brackets or behind it: "a [g]", "a_g", "t/ms", "time in ms", "timeMs". A
+    factor between both, as in "t x 1000 [s]", makes a unit that is not known."""
+    if factor := FACTOR.search(name):
+        return name[:factor.start()], re.sub(r"[\[\]()]", "", factor[0]).strip()
     if found := IN_BRACKETS.fullmatch(name):
         return found[1].strip() or name, (found[2] or found[3] or "").strip()
     if (kind_of(name) == "time" and name.lower() not in ("h", "d", "min", "ns")) or "/" in name and kind_of(name):
         return name, name
     apart = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name)
-    parts = [(apart[:gap.start()], gap[0].strip(), apart[gap.end():]) for gap in APART.finditer(apart)]
+    parts = [(apart[:gap.start()], gap[0].strip(), apart[gap.end():].rstrip(".")) for gap in APART.finditer(apart.rstrip("."))]
     if glued := GLUED.fullmatch(name):
         parts.append((glued[1], "", glued[2]))
     for head, between, unit in parts:

@@ -5,15 +5,17 @@ import io
 import pathlib
 import re
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from ..results import Results
+from ..needed import needed
+from ..results import Result, Results
 from ..sweeps import Sweep
 from ..views import view
 from . import curves, distributions, fields, studies, sweeping
-from .style import saved
+from .style import curve, over, saved, units, words
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 FORMATS = (".png", ".pdf", ".svg")
@@ -31,8 +33,9 @@ KINDS: "dict[str, tuple[Callable[[Results], bool], Callable[[Sequence[Results]],
     "convergence": (lambda r: r.study_kind in studies.CONVERGENCE, studies.convergence),
     "cost": (lambda r: r.study_kind == "cost", studies.cost),
     "correlation_time": (lambda r: "t_corr" in r, curves.correlation_time),  # on request, as the next one
-    "drift": (lambda r: isinstance(r, Sweep) and r.dims == ("bias",), sweeping.drift)}
-ON_REQUEST = ("correlation_time", "drift")
+    "drift": (lambda r: isinstance(r, Sweep) and r.dims == ("bias",), sweeping.drift),
+    "fragility": (lambda r: isinstance(r, Sweep) and len(r.dims) == 1 and any("_cdf(" in key for key in r), sweeping.fragility)}
+ON_REQUEST = ("correlation_time", "drift", "fragility")
 # Kinds that show several files at once.
 TOGETHER = ("spectra", "durations", "slips", "displacements", "arrays", "correlation_time")
 ASK = ("ask the program for density, trajectory, given_force, spectrum with -omega, duration_density, slip with "
@@ -71,7 +74,7 @@ def draw(items: Sequence[Results], picture: str | pathlib.Path | None = None,
         Results; several of them share a picture.
     picture
         Where to save; of several pictures each has its kind appended. The pictures of a sweep, one for each result,
-        go into a folder of that name without its ending.
+        go into a folder: sweep.png and sweep both name the folder sweep.
     kind
         One of `KINDS`, or a key of a sweep; without it, all that fit.
 
@@ -88,6 +91,20 @@ def draw(items: Sequence[Results], picture: str | pathlib.Path | None = None,
     return Figures((name, figure) for name, figure, _ in drawn(items, picture, kind))
 
 
+@view("picture", Result)
+def labelled(result: Result, axes: "Axes | None" = None, label: str | None = None, **look: Any) -> "Axes":
+    """An array, or a result of a sweep, in axes, by default the current ones of pyplot, which get its labels."""
+    axes = axes or needed("matplotlib.pyplot").gca()
+    if result.sweep is not None:
+        shared = axes.has_data()
+        sweeping.into(axes, result.sweep, result.key, label, **look)
+        axes.set_title("" if shared else axes.get_title())  # which has the parameters of one sweep
+    else:
+        curve(axes, result, len(axes.lines), label=label, **look)
+        axes.set(xlabel=over(result), ylabel=words(result.key) + units(result.unit))
+    return axes
+
+
 @view("picture", Results)
 def _drawn_alone(results: Results, picture: str | pathlib.Path | None = None,
                  kind: str | None = None) -> "dict[str, Figure]":
@@ -98,6 +115,8 @@ def drawn(items: Sequence[Results], picture: str | pathlib.Path | None = None,
           kind: str | None = None) -> "list[tuple[str, Figure, pathlib.Path | None]]":
     """As `draw`: kind, figure, and where it was saved."""
     place = pathlib.Path(picture) if picture is not None else None
+    if place and not place.suffix and any(isinstance(item, Sweep) for item in items) and kind is None:
+        place = place.with_name(f"{place.name}{FORMATS[0]}")  # a folder is named
     if place and place.suffix not in FORMATS:
         raise ValueError(f"{place}: a picture ends in {', '.join(FORMATS)}")
     if place and not place.parent.is_dir():

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 from ..results import Result, Results
 from .distributions import is_part
-from .style import (ABSCISSAE, COLOURS, MARKERS, STYLES, WORDS, Figure, Line2D, curve, decades, drag, fraction, memory,
-                    number, numpy, over, scale, step, styled, title, units)
+from .style import (ABSCISSAE, COLOURS, MARKERS, STYLES, Figure, Line2D, curve, decades, drag, fraction, memory,
+                    number, numpy, over, scale, step, styled, title, units, words)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -140,7 +140,7 @@ def arrays(items: Sequence[Results]) -> "Figure":
     def panel(stem: str, keys: Sequence[str]) -> Panel:
         result = next(item[keys[0]] for item in items if keys[0] in item)
         name = stem if len(keys) > 1 else keys[0]
-        return tuple(keys), WORDS.get(name, name) + units(result.unit), scale(result.abscissa), "linear"
+        return tuple(keys), words(name) + units(result.unit), scale(result.abscissa), "linear"
     return _panels(items, [panel(*group) for group in groups.items()])
 
 
@@ -157,8 +157,8 @@ def _panels(items: Sequence[Results], panels: Sequence[Panel]) -> "Figure":
     figure = Figure(figsize=(0.6 + 3.4 * max(columns, 1.4), 0.4 + 2.8 * rows))
     for n, panel in enumerate(panels):
         _panel(figure.add_subplot(rows, columns, n + 1), panel, items)
-    if len(items) == 1:
-        figure.suptitle(title(items[0]), fontsize=10)
+    if len(titles := set(map(title, items))) == 1:
+        figure.suptitle(*titles, fontsize=10)
     return figure
 
 
@@ -167,9 +167,9 @@ def _panel(axes: "Axes", panel: Panel, items: Sequence[Results]) -> None:
     for n, item in enumerate(items):
         for m, (key, style) in enumerate(zip(keys, STYLES)):
             if key in item:
-                words = [item.name if len(items) > 1 else "", SPELT.get(key, key if len(keys) > 1 else "")]
+                parts = [item.name if len(items) > 1 else "", SPELT.get(key, words(key) if len(keys) > 1 else "")]
                 result, arguments = _against(item, key), len(keys) > 1 and key not in SPELT
-                curve(axes, result, m if arguments else n, style=style, label=", ".join(filter(None, words)) or None)
+                curve(axes, result, m if arguments else n, style=style, label=", ".join(filter(None, parts)) or None)
                 axes.set_xlabel(over(result))
         if "displacement_variance" in keys and {keys[0], "S_0"} <= item.keys():
             t = item[keys[0]].abscissa

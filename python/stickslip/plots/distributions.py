@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from ..results import Result, Results
-from .style import COLOURS, DISPLACEMENT, Figure, curve, numpy, styled, title
+from .style import COLOURS, DISPLACEMENT, MARKERS, Figure, curve, numpy, styled, title
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -32,8 +32,8 @@ def is_part(key: str) -> bool:
 
 @styled
 def displacements(items: Sequence[Results]) -> "Figure":
-    """Density and distribution function by displacement, a colour for each time and file. Atoms are bars with their
-    probability, to the scale on the right; quantiles are marks with their errors on the distribution function."""
+    """Density and distribution function by displacement, a colour for each time and file. Atoms are stems with
+    a mark at their probability, to the scale on the right; quantiles are marks with their errors on the distribution function."""
     curves = [(item, time) for item in items
               for time in dict.fromkeys(time for key in DISTRIBUTIONS for time in times(item, key))]
     dense = any(times(item, DISTRIBUTIONS[0]) for item in items)
@@ -83,8 +83,9 @@ def _atoms(axes: "Axes", curves: Sequence[tuple[Results, str]]) -> None:
         probability = item["displacement_atom"].value[at]
         if probability > 0:
             scale = scale or axes.twinx()
-            scale.vlines(item["displacement_atom_at"].value[at], 0, probability, color=COLOURS[n % len(COLOURS)],
-                         linewidth=max(2, 8 - 3 * n), alpha=0.6)
+            place, colour = item["displacement_atom_at"].value[at], COLOURS[n % len(COLOURS)]
+            scale.vlines(place, 0, probability, color=colour, linewidth=1)  # narrow: the density peaks there
+            scale.plot(place, probability, marker=MARKERS[n % 5], color=colour, markerfacecolor="white", markersize=6)
     if scale is not None:
-        scale.set(ylabel="probability of the atom", ylim=(0, 1.05 * scale.dataLim.y1))
+        scale.set(ylabel="probability of the atom (mark)", ylim=(0, 1.15 * scale.dataLim.y1))
         scale.grid(False)

@@ -8,7 +8,7 @@ from ..fitting import Fit, Profile
 from ..measurements import PHASES, Sample, Values, at
 from ..results import Results
 from ..views import view
-from .style import ABSCISSAE, COLOURS, WORDS, Figure, numpy, on_axis, saved, styled, symbol, units
+from .style import ABSCISSAE, COLOURS, Figure, numpy, on_axis, saved, styled, symbol, units, words
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -51,7 +51,7 @@ def _scalars(axes: "Axes", pulls: Sequence[tuple[str, float]]) -> None:
     place = numpy.arange(len(pulls))
     axes.errorbar([pull for _, pull in pulls], place, xerr=1, fmt="o", color=COLOURS[0], markersize=4, capsize=2)
     axes.axvline(0, color=COLOURS[4], linewidth=1)
-    axes.set_yticks(place, [WORDS.get(key, key) for key, _ in pulls])
+    axes.set_yticks(place, [words(key) for key, _ in pulls])
     axes.set(xlabel="measured less model  [standard errors]", ylim=(len(pulls) - 0.5, -0.5))
 
 
@@ -60,7 +60,7 @@ def _array(axes: "Axes", values: Values, found: Results, name: str) -> None:
     axes.errorbar(values.over, values.value, values.error, fmt="o", color=COLOURS[0], markersize=3, capsize=2, label="measured")
     axes.plot(result.abscissa, result.value, color=COLOURS[1], label="model")
     axes.set(xscale=_scale(values.over), yscale=_scale(values.value - values.error), title=name,
-             xlabel=ABSCISSAE.get(result.abscissa_name, result.abscissa_name), ylabel=WORDS.get(values.key, values.key) + units(result.unit))
+             xlabel=ABSCISSAE.get(result.abscissa_name, result.abscissa_name), ylabel=words(values.key) + units(result.unit))
     axes.legend()
 
 
@@ -86,7 +86,10 @@ def draw_profile(profile: Profile, picture: str | pathlib.Path | None) -> "Figur
     """The rise of twice the misfit, and the limits of confidence intervals."""
     figure = Figure(figsize=(4.4, 3.2))
     axes = figure.subplots()
-    axes.plot(profile.values, profile.rise, "o-", color=COLOURS[0], markersize=3, clip_on=False)  # the least is whole
+    root = numpy.sqrt(numpy.maximum(profile.rise, 0)) * numpy.sign(profile.values - profile.values[profile.rise.argmin()])
+    fine = numpy.linspace(profile.values[0], profile.values[-1], 201)  # roots are nearly straight, as `interval` has it
+    axes.plot(fine, numpy.interp(fine, profile.values, root) ** 2, color=COLOURS[0])
+    axes.plot(profile.values, profile.rise, "o", color=COLOURS[0], markersize=3, clip_on=False)  # the least is whole
     for limit, share in zip(LIMITS, ("68 %", "95 %")):
         axes.axhline(limit, color=COLOURS[4], linewidth=0.8, linestyle="--")
         axes.text(profile.values[0], limit, share, fontsize=8, va="bottom")

@@ -5,8 +5,8 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from ..results import Results
-from .style import (ABSCISSAE, COLOURS, MARKERS, STYLES, WORDS, Figure, Line2D, Patch, matplotlib, numpy, styled, title,
-                    units, without)
+from .style import (ABSCISSAE, COLOURS, MARKERS, STYLES, Figure, Line2D, Patch, matplotlib, numpy, styled, title,
+                    units, without, words)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -158,7 +158,7 @@ def convergence(items: Sequence[Results]) -> "Figure":
                 axes.axhspan(limit - error, limit + error, color=COLOURS[n], alpha=0.2, linewidth=0)
             else:
                 axes.plot(table[over], table["richardson"], linestyle="--", label="extrapolated", **look, mfc="white")
-        axes.set(xscale="log", xlabel=CONVERGENCE[over], ylabel=WORDS.get(key, key) + units(unit_of(results, key)))
+        axes.set(xscale="log", xlabel=CONVERGENCE[over], ylabel=words(key) + units(unit_of(results, key)))
         if axes.get_legend_handles_labels()[1]:
             axes.legend(fontsize=8)
     varied = ("tau", "delta") if over == "tau" else (over,)  # delta is a share of the deviation there

@@ -11,7 +11,6 @@ from ..needed import needed
 from ..program import ProgramError
 from ..reference import declared
 from ..results import Result, Results
-from ..views import view
 
 if TYPE_CHECKING:
     import numpy
@@ -26,11 +25,11 @@ Figure, Line2D, Patch = matplotlib.figure.Figure, matplotlib.lines.Line2D, matpl
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#222222")
 STYLES = ("-", "--", "-.", (0, (1, 1.2)), (0, (5, 1.5, 1, 1.5, 1, 1.5)))
 MARKERS = "os^Dv"
-LOOK = {"figure.facecolor": "white", "axes.grid": True, "grid.color": "#e4e4e4", "axes.axisbelow": True,
+LOOK = {"axes.prop_cycle": matplotlib.cycler(color=COLOURS), "figure.facecolor": "white", "axes.grid": True, "grid.color": "#e4e4e4", "axes.axisbelow": True,
         "legend.frameon": False, "font.size": 9, "savefig.dpi": 200, "pdf.fonttype": 42, "figure.constrained_layout.use": True}
 ABSCISSAE = {"omega": r"angular frequency $\omega$  [1/time]", "time": "time $t$  [time]",
              "lambda": r"$\lambda$  [1/time]", "k": "level $i$", "distance": "path length $d$  [length]",
-             "inverse_distance": "$s$  [1/length]", "velocity": "speed $w$  [velocity]", "mode": "mode",
+             "inverse_distance": "$s$  [1/length]", "velocity": "speed $w$  [velocity]", "mode": "mode", "slip": "number of the slip",
              "tilt": "tilt $s$  [1/length]", "wavenumber": "wavenumber $k$  [1/length]",
              "tilted_velocity": "mean velocity $u$  [velocity]",
              "probability": "probability $p$"}
@@ -46,9 +45,38 @@ WORDS = {"P_stick": r"probability of sticking $P_\mathrm{stick}$", "P_slide": r"
          "F_stick": r"$E[e^{-\lambda T_\mathrm{stick}}]$", "F_slide": r"$E[e^{-\lambda T_\mathrm{slide}}]$",
          "F_excursion": r"$E[e^{-\lambda (T_\mathrm{slide} + T_\mathrm{stick})}]$",
          "theta": r"growth rate $\theta(s)$", "tilted_velocity": r"mean velocity $\theta'(s)$",
-         "rate_function": "rate function $I(u)$", "entry_law": "probability that sticking begins on level $i$"}
+         "rate_function": "rate function $I(u)$", "entry_law": "probability that sticking begins on level $i$",
+         "var_stick": "variance of the duration of sticking", "var_slide": "variance of the duration of sliding",
+         "f_stick": "density of the duration of sticking", "f_slide": "density of the duration of sliding",
+         "f_excursion": "density of the duration of an excursion", "f_stick_0": r"$f_\mathrm{stick}(0+)$",
+         "cdf_stick": r"$P(T_\mathrm{stick} \leq t)$", "cdf_slide": r"$P(T_\mathrm{slide} \leq t)$",
+         "cdf_excursion": r"$P(T_\mathrm{stick} + T_\mathrm{slide} \leq t)$",
+         "mean_slip": "mean path of a slip", "var_slip": "variance of the path of a slip",
+         "mean_slip_net": "mean displacement of a slip", "var_slip_net": "variance of the displacement of a slip",
+         "f_slip": "density of the path of a slip", "cdf_slip": r"$P(S \leq d)$", "F_slip": r"$E[e^{-s S}]$",
+         "P_peak": "P(largest speed $> w$)", "mean_first_passage": "mean time to the speed $w$",
+         "first_passage_mean": "mean time to the speed $w$", "slip_rate": "slips in a unit of time",
+         "F_passage(w)": r"$E[e^{-\lambda T(w)}]$ of the time $T$ to a speed",
+         "f_passage(w)": "density of the time $T(w)$ to a speed", "cdf_passage(w)": r"$P(T(w) \leq t)$ of the time to a speed",
+         "displacement_mean": "$E[x(t)]$", "displacement_variance": "Var $x(t)$",
+         "displacement_cosine(t)": r"$E[\cos k x(t)]$", "displacement_sine(t)": r"$E[\sin k x(t)]$",
+         "displacement_density(t)": "density of $x(t)$", "displacement_cdf(t)": r"$P(x(t) \leq d)$",
+         "displacement_quantile(t)": "quantile of $x(t)$", "displacement_atom": "probability of the atom of $x(t)$",
+         "final_displacement": "displacement in the end", "largest_displacement": "largest displacement",
+         "largest_speed": "largest speed", "sliding_share": "share of the time in motion", "slip_count": "number of slips",
+         "slip_begin": "begin of a slip", "slip_end": "end of a slip", "slip_displacement": "displacement of a slip",
+         "slip_peak": "largest speed of a slip", "path_force": "force", "path_velocity": "velocity",
+         "path_displacement": "displacement"}
 FEW_POINTS = 20  # of a curve, each of which is marked, as the line between them is straight
 LEVELS = ("delta", "delta_per_mu_s", "noise_levels")  # of the noise: distance, stated apart, and range, which is not
+
+
+def words(key: str) -> str:
+    """What a result is, in words or symbols; TeX. Its key where it has neither."""
+    stem, _, argument = key.rstrip(")").partition("(")
+    general = next((name for name in WORDS if name.partition("(")[0] == stem), key)
+    letter = general.partition("(")[2]
+    return WORDS.get(key) or WORDS.get(general, key).replace(f"({letter}", f"({argument})" if argument else f"({letter}")
 
 
 def styled(draw: Callable[..., Any]) -> Callable[..., Any]:
@@ -86,21 +114,12 @@ def curve(axes: "Axes", result: Result, n: int = 0, *, colour: str | None = None
     if result.ci95 is not None:
         bars(axes, x, value, result.ci95, colour, label, "o" if style == STYLES[0] else MARKERS[n % 5])
         return
-    if result.abscissa_name in ("k", "mode") or x.size == 1:  # nothing lies between
+    if result.abscissa_name in ("k", "mode", "slip") or x.size == 1:  # nothing lies between
         axes.errorbar(x, value, error, fmt=MARKERS[n % 5], color=colour, markersize=3, capsize=2, label=label)
         return
     axes.plot(x, value, color=colour, linestyle=style, linewidth=1.6, label=label,
               marker="." if x.size <= FEW_POINTS else None, markersize=5)
     axes.fill_between(x, value - error, value + error, color=colour, alpha=0.25, linewidth=0)
-
-
-@view("picture", Result)
-def labelled(result: Result, axes: "Axes | None" = None, **look: Any) -> "Axes":
-    """An array in axes, by default the current ones of pyplot, which get its labels."""
-    axes = axes or needed("matplotlib.pyplot").gca()
-    curve(axes, result, len(axes.lines), **look)
-    axes.set(xlabel=over(result), ylabel=WORDS.get(result.key, result.key) + units(result.unit))
-    return axes
 
 
 def bars(axes: "Axes", x: "numpy.ndarray", value: "numpy.ndarray", ci95: "numpy.ndarray", colour: str,
@@ -115,7 +134,8 @@ def over(result: Result) -> str:
     name = result.abscissa_name
     if name == "distance" and result.key.startswith("displacement"):
         return DISPLACEMENT
-    return ABSCISSAE.get(name, name)
+    label = ABSCISSAE.get(name, name)
+    return label.replace("[time]", "[s]") if re.match(r"m\b", result.unit) else label  # of a record with units
 
 
 def scale(values: "numpy.ndarray") -> str:
@@ -127,6 +147,7 @@ def scale(values: "numpy.ndarray") -> str:
 
 def units(text: str) -> str:
     """A unit of the program, such as "velocity^2*time", in brackets; TeX. Empty where there is none."""
+    text = "length" if text == "velocity*time" else text
     return "  [" + re.sub(r"\^(\d+)", r"$^\1$", text).replace("*", " ") + "]" if text else ""
 
 

@@ -1,5 +1,6 @@
-"""Sweeps: each result, and drift against the bias."""
+"""Sweeps: each result, drift against the bias, and fragility curves."""
 
+import statistics
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -7,8 +8,8 @@ from ..results import Result, Results
 from ..sweeps import Sweep
 from . import style
 from .fields import cells_around
-from .style import (COLOURS, MARKERS, STYLES, WORDS, Figure, bars, decades, known, numpy, on_axis, over, scale,
-                    styled, symbol, title, units, without)
+from .style import (COLOURS, MARKERS, STYLES, Figure, bars, decades, known, numpy, on_axis, over, scale,
+                    styled, symbol, title, units, without, words)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -35,17 +36,25 @@ def each(sweep: Sweep) -> "dict[str, Figure]":
 @styled
 def one(sweep: Sweep, key: str) -> "Figure":
     """The figure of one result, as in `each`."""
-    return (_scalar if sweep[key].dims == sweep.dims else _array)(sweep, sweep[key])
+    axes = Figure(figsize=(6.4, 4.2)).subplots()
+    into(axes, sweep, key)
+    return axes.figure
 
 
-def _array(sweep: Sweep, result: Result) -> "Figure":
-    figure = Figure(figsize=(6.4, 4.2))
-    axes = figure.subplots()
+def into(axes: "Axes", sweep: Sweep, key: str, label: str | None = None) -> None:
+    """One result in axes, as in `each`, beside curves that are there; the label is that of a single curve."""
+    if sweep[key].dims == sweep.dims:
+        _scalar(axes, sweep, sweep[key], label)
+    else:
+        _array(axes, sweep, sweep[key])
+
+
+def _array(axes: "Axes", sweep: Sweep, result: Result) -> None:
     *others, last = sweep.dims
     values = sweep.coords[last]
-    if result.abscissa.ndim == 1 and len(result.abscissa) < len(values):
+    if result.abscissa.ndim == 1 and len(result.abscissa) < len(values) and result.abscissa_name != "slip":
         _against_option(axes, sweep, result)
-        return figure
+        return
     shown = _some(len(values))
     for n, point in enumerate(shown):
         at = (0,) * len(others) + (point,)
@@ -58,7 +67,6 @@ def _array(sweep: Sweep, result: Result) -> "Figure":
              **({"yscale": "log", "ylim": (low / 2, high * 2)} if 0 < 100 * low < high else {}))
     _title(axes, sweep, others, len(shown), len(values))
     axes.legend()
-    return figure
 
 
 def _some(count: int) -> "numpy.ndarray":
@@ -80,28 +88,25 @@ def _against_option(axes: "Axes", sweep: Sweep, result: Result) -> None:
     axes.legend()
 
 
-def _scalar(sweep: Sweep, result: Result) -> "Figure":
-    figure = Figure(figsize=(6.4, 4.2))
-    axes = figure.subplots()
+def _scalar(axes: "Axes", sweep: Sweep, result: Result, label: str | None) -> None:
     names, first = sweep.dims[:2], (slice(None),) * min(2, len(sweep.dims)) + (0,) * (len(sweep.dims) - 2)
     value, error = result.value[first], result.error[first]
     ci95 = None if result.ci95 is None else result.ci95[first]
     _title(axes, sweep, sweep.dims[2:])
     if len(names) == 2 and len(value) > FEW:
-        _map(figure, axes, sweep, result, first)
-        return figure
+        _map(axes, sweep, result, first)
+        return
     x = sweep.coords[names[-1]]
     rows = [numpy.s_[:]] if len(names) == 1 else range(len(value))
-    for n, row in enumerate(rows):
-        label = f"{symbol(names[0])} = {sweep.coords[names[0]][n]:g}" if len(names) == 2 else None
+    for n, row in enumerate(rows, len(axes.containers)):
+        label = f"{symbol(names[0])} = {sweep.coords[names[0]][row]:g}" if len(names) == 2 else label
         at = first if len(names) == 1 else (row, *first[1:])
         curve(axes, x, value[row], error[row], n, label, None if ci95 is None else ci95[row], sweep, at)
-    if len(names) == 2:
+    if label:
         axes.legend()
     axes.set(xscale=scale(x), xlabel=_label(sweep, names[-1]), ylabel=_label(sweep, result.key))
     if scale(x) == "log" and x.max() < 100 * x.min():  # powers of ten alone would be one or two
         decades(axes.xaxis)
-    return figure
 
 
 def curve(axes: "Axes", x: "numpy.ndarray", value: "numpy.ndarray", error: "numpy.ndarray", n: int = 0,
@@ -126,7 +131,7 @@ def _edges(values: "numpy.ndarray") -> "numpy.ndarray":
     return numpy.exp(cells_around(numpy.log(values))) if scale(values) == "log" else cells_around(values)
 
 
-def _map(figure: "Figure", axes: "Axes", sweep: Sweep, result: Result, at: tuple) -> None:
+def _map(axes: "Axes", sweep: Sweep, result: Result, at: tuple) -> None:
     value = result.value[at]
     down, across = sweep.dims[:2]
     y, x = sweep.coords[down], sweep.coords[across]
@@ -143,7 +148,7 @@ def _map(figure: "Figure", axes: "Axes", sweep: Sweep, result: Result, at: tuple
     for marked, look in ((sweep.status != "reached", {"linestyle": "", "marker": "x"}), (sweep.concerned, RING)):
         where = numpy.argwhere(marked[at])
         axes.plot(x[where[:, 1]], y[where[:, 0]], color="white", **look)
-    figure.colorbar(mesh, label=_label(sweep, result.key))
+    axes.figure.colorbar(mesh, ax=axes, label=_label(sweep, result.key))
     for axis, values in ((axes.xaxis, x), (axes.yaxis, y)):
         if scale(values) == "log":
             decades(axis)
@@ -160,7 +165,7 @@ def _title(axes: "Axes", sweep: Sweep, held: Sequence[str], shown: int = 0, coun
 
 def _label(sweep: Sweep, name: str) -> str:
     if name in sweep:
-        return WORDS.get(name, name) + units(sweep[name].unit)
+        return words(name) + units(sweep[name].unit)
     return on_axis(name) + units(sweep.units.get(name) or known().get(name, {}).get("unit", ""))
 
 
@@ -177,3 +182,32 @@ def drift(items: Sequence[Results]) -> "Figure":
     axes.set(xlabel="bias $g$  [force]", ylim=(0, None), xlim=(0, None))
     axes.legend(loc="best")
     return figure
+
+
+@styled
+def fragility(items: Sequence[Results]) -> "Figure":
+    """P(|x(t)| > d) over the strength that was swept, for each d of which the distances have both signs, and the lognormal
+    distribution function nearest to it, whose median and logarithmic standard deviation the legend has."""
+    (sweep,) = items
+    axes, normal = Figure(figsize=(6.4, 4.2)).subplots(), statistics.NormalDist()
+    (name, strength), keys = *sweep.coords.items(), [key for key in sweep if key.startswith("displacement_cdf(")]
+    fine = numpy.linspace(strength.min(), strength.max(), 201)
+    for key in keys:
+        d, cdf, error = sweep[key].abscissa, sweep[key].value, sweep[key].error
+        for high in numpy.flatnonzero((d > 0) & numpy.isin(-d, d)):
+            low, n = numpy.flatnonzero(d == -d[high])[0], len(axes.containers)
+            p, bar = 1 - cdf[:, high] + cdf[:, low], error[:, high] + error[:, low]
+            inside, label = (p > bar) & (p < 1 - bar), f"$P(|x({key[17:-1]})| > {d[high]:g})$"
+            if inside.sum() > 1:
+                z = numpy.array([normal.inv_cdf(one) for one in p[inside]])
+                weights = numpy.exp(-z**2 / 2) / (bar[inside] + 1e-6)
+                slope, begin = numpy.polyfit(numpy.log(strength[inside]), z, 1, w=weights)
+                axes.plot(fine, [normal.cdf(begin + slope * x) for x in numpy.log(fine)], color=COLOURS[n % 5], zorder=1)
+                label += f": median {numpy.exp(-begin / slope):.3g}, deviation of the logarithm {1 / slope:.2g}"
+            axes.errorbar(strength, p, bar, fmt=MARKERS[n % 5], color=COLOURS[n % 5], markersize=4, capsize=2, label=label)
+    if not axes.containers:
+        raise ValueError("fragility needs a sweep with displacement_distribution whose -distance has both signs, such as -0.1,0.1")
+    axes.set(xlabel=_label(sweep, name), ylabel="probability of exceedance", ylim=(-0.02, 1.02))
+    _title(axes, sweep, ())
+    axes.legend(fontsize=8)
+    return axes.figure
