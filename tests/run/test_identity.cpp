@@ -83,9 +83,7 @@ std::vector<Options> command_lines(const NoiseFiles& files) {
   lines[4].insert({{"noise", "file"}, {"noise_file", files.levels}});
   lines[5].insert(
       {{"noise", "chain"}, {"noise_states", files.states}, {"noise_rates", files.rates}});
-  lines[6].insert({{"noise", "narrow_band"},
-                   {"band_frequency", "2"},
-                   {"band_width", "0.6"}});
+  lines[6].insert({{"noise", "narrow_band"}, {"band_frequency", "2"}, {"band_width", "0.6"}});
   lines[7].insert({{"noise", "filtered"},
                    {"ground_frequency", "2"},
                    {"ground_damping", "0.5"},
