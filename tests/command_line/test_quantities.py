@@ -11,7 +11,7 @@ SMALL = ("-delta", "1", "-mu_d", "0.5", "-accuracy", "1e-1", "-excursions", "200
 # With symmetry, without it, and with every parameter of sensitivity.
 MODELS = {"symmetric": (), "biased": ("-bias", "0.2", "-mu_d_minus", "0.4"),
           "stribeck": ("-bias", "0.2", "-friction", "stribeck", "-stribeck_velocity", "0.1")}
-# What a spring adds, by the default method alone.
+# What a spring adds, by the default method and by simulation.
 SPRING = ("-spring_stiffness", "1", "-noise", "telegraph", "-telegraph_amplitude", "1.5", "-telegraph_rate", "1")
 ARGUMENTS = {"-lambda": "0.5,1", "-omega": "0.5,1", "-time": "3,4", "-distance": "0.5,1",
              "-inverse_distance": "0.5,1", "-tilt": "-0.2,0.4", "-wavenumber": "0.5,2", "-probability": "0.5,0.9",
@@ -77,8 +77,9 @@ class Keys(Case):
                         if key != "dA_dp":
                             self.assertEqual(unit, "" if "[" in row["unit"] else row["unit"])
                     given[key].add(letter)
-        for key in self.written(["moments"], *SPRING):
-            given[key].add("E")
+        for letter, options in (("E", ()), ("M", ("-route", "monte_carlo", "-excursions", "100"))):
+            for key in self.written(["moments"], *SPRING, *options):
+                given[key].add(letter)
         for key, row in self.keys.items():
             with self.subTest(key=key):
                 self.assertEqual(given[key], set(row["-route"].split()))
