@@ -156,11 +156,11 @@ constexpr double kMemories = 8;    // that a path forgets before a sample, which
 void PathSource::draw_from(int level, RandomStream& random, Excursion& e) {
   if (level == kPathBegins) {
     begin(random);
-    while (clock_ < span_) follow_one(random, e);
-    end_ = span_ * (2 + std::floor((clock_ - span_) / span_));
+    while (elapsed < span_) follow_one(random, e);
+    end_ = span_ * (2 + std::floor((elapsed - span_) / span_));
   }
   follow_one(random, e);
-  e.next = clock_ < end_ ? kPathBegins + 1 : kPathBegins;
+  e.next = elapsed < end_ ? kPathBegins + 1 : kPathBegins;
 }
 
 PathScales scales_of(const model::Process& process) {
@@ -252,7 +252,7 @@ class GaussianSource final : public PathSource {
 
   // From rest, with the noise in its stationary distribution.
   void begin(RandomStream& random) override {
-    clock_ = k_ = 0;
+    elapsed = k_ = 0;
     p_ = centre_;
     for (double& z : normal_) z = random.normal();
     std::fill(now_.begin(), now_.end(), 0.0);
@@ -260,17 +260,17 @@ class GaussianSource final : public PathSource {
     Excursion none;
     none.integrals.resize(wanted_.observables.size());
     stick(random, none);
-    if (kTied<Flow>) clock_ = 0;
+    if (kTied<Flow>) elapsed = 0;
   }
 
   void follow_one(RandomStream& random, Excursion& e) override {
-    const double begun = clock_;
+    const double begun = elapsed;
     e = {.integrals = std::move(e.integrals)};
     e.integrals.assign(wanted_.observables.size(), {});
     e.upwards = sign_ > 0;
     slide(random, e);
     stick(random, e);
-    if (kTied<Flow>) clock_ = begun + e.slide;
+    if (kTied<Flow>) elapsed = begun + e.slide;
   }
 
   void slide(RandomStream& random, Excursion& e) {
@@ -378,7 +378,7 @@ class GaussianSource final : public PathSource {
       for (int c = 0; c <= r; ++c) sum += *factor++ * normal_[c];
       now_[r] = sum;
     }
-    clock_ += step.time;
+    elapsed += step.time;
     return now_[size_] / step.time;
   }
 
@@ -387,7 +387,7 @@ class GaussianSource final : public PathSource {
     for (int i = 0; i < size_; ++i) {
       now_[i] = before_[i] + share * (now_[i] - before_[i]) + noise_.b[i] * off;
     }
-    clock_ -= (1 - share) * steps_[k_].time;
+    elapsed -= (1 - share) * steps_[k_].time;
   }
 
   // The force also changed by `turn` along the piece, and the speed by `rise`.

@@ -103,6 +103,10 @@ NAMED = {
                               "pulse_steps": random.randint(2, 4), "pulse_sign": random.choice(("both", "up", "down"))},
     "ou": lambda random: {"tau": log_uniform(random, 0.3, 3), "delta": 0.5, "noise_deviation": 0.75, "noise_levels": 3}}
 
+BANDS = {
+    "narrow_band": lambda random: {"band_frequency": log_uniform(random, 0.5, 4), "band_width": random.uniform(0.2, 1)},
+    "filtered": lambda random: {"ground_frequency": log_uniform(random, 1, 8), "ground_damping": random.uniform(0.3, 0.9)}}
+
 
 def named(random):
     """A noise by its name, or the sum of two."""
@@ -118,7 +122,7 @@ def named(random):
 def gaussian(random):
     """Gaussian noise of continuous paths."""
     word = random.choice(("ou", "narrow_band", "filtered"))
-    own = {"tau": log_uniform(random, 0.2, 4), "delta": 0} if word == "ou" else NAMED[word](random)
+    own = {"tau": log_uniform(random, 0.2, 4), "delta": 0} if word == "ou" else BANDS[word](random)
     return friction_and_drag(random) | own | {"noise": word, "noise_deviation": log_uniform(random, 0.7, 2)}
 
 
