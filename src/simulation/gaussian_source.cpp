@@ -151,19 +151,12 @@ constexpr double kRoom = 2;        // and the threshold in a step at rest that n
 constexpr double kClear = 8;       // times what it has to miss is the force in which bodies stop
 constexpr double kMemories = 8;    // that a path forgets before a sample, which lasts as long
 
-}  // namespace
+struct Scales {
+  double fastest;  // rate [1/time]
+  double memory;   // time [time]
+};
 
-void PathSource::draw_from(int level, RandomStream& random, Excursion& e) {
-  if (level == kPathBegins) {
-    begin(random);
-    while (elapsed < span_) follow_one(random, e);
-    end_ = span_ * (2 + std::floor((elapsed - span_) / span_));
-  }
-  follow_one(random, e);
-  e.next = elapsed < end_ ? kPathBegins + 1 : kPathBegins;
-}
-
-PathScales scales_of(const model::Process& process) {
+Scales scales_of(const model::Process& process) {
   const auto& noise = process.noise;
   const double root = std::sqrt(process.stiffness);
   double slowest = kInfinity, fastest = noise.rate();
@@ -191,6 +184,18 @@ PathScales scales_of(const model::Process& process) {
   // The amplitude of an oscillation falls half as fast as its energy; an overdamped body creeps.
   const double decay = loss + std::min(by_friction, root);
   return {fastest + slope + root, 1 / slowest + 2 / decay + decay / process.stiffness};
+}
+
+}  // namespace
+
+void PathSource::draw_from(int level, RandomStream& random, Excursion& e) {
+  if (level == kPathBegins) {
+    begin(random);
+    while (elapsed < span_) follow_one(random, e);
+    end_ = span_ * (2 + std::floor((elapsed - span_) / span_));
+  }
+  follow_one(random, e);
+  e.next = elapsed < end_ ? kPathBegins + 1 : kPathBegins;
 }
 
 double span_of_sample(const model::Process& process) {

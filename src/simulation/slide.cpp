@@ -125,7 +125,7 @@ class LinearStep {
   /// When u' changes its sign: without a spring u'(t) = slope/c + (u'(0) - slope/c) exp(-c t).
   [[nodiscard]] double turn() const {
     const double rate = force_ - c_ * speed_;
-    if (k_ > 0) return turn_of_spring(rate + 0.0, slope_ - k_ * speed_);
+    if (k_ > 0) return turn_of_spring(rate + 0.0, slope_ - k_ * speed_);  // -0 is another angle
     if (rate == 0 || slope_ == 0 || (rate > 0) == (slope_ > 0)) return kInfinity;
     const double time = -rate / slope_;
     return c_ > 0 ? std::log1p(c_ * time) / c_ : time;

@@ -433,8 +433,8 @@ class Source final : public PathSource {
   Levels levels_;
   std::optional<NoiseLevels> at_start_;
   Flow flow_, backward_flow_;
-  double stiffness_, centre_, highest_, lowest_,
-      p_ = 0;  // forces of noise and spring that hold a body
+  double stiffness_, centre_, p_ = 0;
+  double highest_, lowest_;  // forces of noise and spring that hold a body
   int i_ = 0;
   Wanted wanted_;
   bool symmetric_;

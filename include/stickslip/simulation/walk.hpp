@@ -290,12 +290,6 @@ class PathSource : public ExcursionSource {
 /// four times as long P_stick of a narrow band is off by 2e-3, P(|X| <= mu_s) by 3e-3.
 constexpr double kStepError = 1e-3;
 
-/// Rates and times of paths that samples follow.
-struct PathScales {
-  double fastest;  ///< rate [1/time]
-  double memory;   ///< time [time]
-};
-[[nodiscard]] PathScales scales_of(const model::Process& process);
 /// The span of a sample, in which a path forgets.
 [[nodiscard]] double span_of_sample(const model::Process& process);
 /// Steps of such a path, or jumps of its noise, that a sample takes at least.

@@ -25,7 +25,8 @@ Figure, Line2D, Patch = matplotlib.figure.Figure, matplotlib.lines.Line2D, matpl
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#222222")
 STYLES = ("-", "--", "-.", (0, (1, 1.2)), (0, (5, 1.5, 1, 1.5, 1, 1.5)))
 MARKERS = "os^Dv"
-LOOK = {"axes.prop_cycle": matplotlib.cycler(color=COLOURS), "figure.facecolor": "white", "axes.grid": True, "grid.color": "#e4e4e4", "axes.axisbelow": True,
+LOOK = {"axes.prop_cycle": matplotlib.cycler(color=COLOURS), "figure.facecolor": "white", "axes.grid": True,
+        "grid.color": "#e4e4e4", "axes.axisbelow": True,
         "legend.frameon": False, "font.size": 9, "savefig.dpi": 200, "pdf.fonttype": 42, "figure.constrained_layout.use": True}
 ABSCISSAE = {"omega": r"angular frequency $\omega$  [1/time]", "time": "time $t$  [time]",
              "lambda": r"$\lambda$  [1/time]", "k": "level $i$", "distance": "path length $d$  [length]",
