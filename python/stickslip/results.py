@@ -439,8 +439,7 @@ def _datasets(group: "h5py.Group") -> dict[str, Any]:
 
 def from_hdf5(file: "h5py.File", name: str = "") -> Results:
     """Results of an open file of -output."""
-    record = dict(file["record"].attrs)
-    options = {key: str(value) for key, value in file["record/options"].attrs.items()}
+    record, options = dict(file["record"].attrs), options_in(file)
     parts: dict[str, Any] = {
         "provenance": record, "warnings": warnings_in(record), "cost": {"seconds": float(record.get("seconds", math.nan))}, **fields(file),
         "scene": {key: parameter(value) for key, value in options.items()},
@@ -456,6 +455,14 @@ def from_hdf5(file: "h5py.File", name: str = "") -> Results:
         results[key] = result_of(key, {**dict(data.attrs), **_datasets(data)})
     results |= _limits(parts.get("study", {}))
     return Results(results, options=options, name=name, **parts)
+
+
+def options_in(file: "h5py.File") -> dict[str, str]:
+    """The options as used, by name; those without effect are empty."""
+    record = file["record"].attrs
+    unused = str(record.get("options_without_effect", "")).split(",")
+    return dict.fromkeys(filter(None, unused), "") | {
+        key: str(value) for key, value in file["record/options"].attrs.items()}
 
 
 def warnings_in(record: dict[str, Any]) -> list[str]:

@@ -7,7 +7,7 @@ import pathlib
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from .results import Result, Results, array, result_of, warnings_in
+from .results import Result, Results, array, options_in, result_of, warnings_in
 from .needed import needed
 
 if TYPE_CHECKING:
@@ -160,7 +160,7 @@ def from_hdf5(file: "h5py.File", name: str = "") -> Sweep:
                 tuple(axes) + ((inner,) if inner else ()), inner,
                 _common(group[f"{key}_{inner}"][()]) if inner else None, numpy.stack(ends, -1) if ends else None)
     status = numpy.array([STATES[int(code)] for code in group["status"][()].ravel()], object).reshape(shape)
-    options = {key: str(value) for key, value in file["record/options"].attrs.items()}
+    options = options_in(file)
     return Sweep(coords, results, status, {}, name=name, options=options, warnings=warnings_in(record), provenance=record,
                  units={axis: str(group[axis].attrs.get("unit", "")) for axis in axes})
 

@@ -1,6 +1,7 @@
 #include "stickslip/cli/hdf5_file.hpp"
 
 #include <fmt/format.h>
+#include <hdf5_hl.h>
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
@@ -63,46 +64,58 @@ void write_attribute(hid_t file, const std::string& path, const std::string& nam
   require(H5Awrite(attribute, type, value), name);
 }
 
-void write_field(Hdf5File& file, const std::string& name, const quantities::PhaseField& field) {
-  file.write_rows(name, field.x().size(), field.v().size(), field.local_levels(),
+/// A field over the axes x and v of a group.
+void write_field(Hdf5File& file, const std::string& group, const std::string& name,
+                 const quantities::PhaseField& field) {
+  const std::string path = group + "/" + name;
+  file.write_rows(path, field.x().size(), field.v().size(), field.local_levels(),
                   field.local_rows());
+  file.attach(path, {group + "/x", group + "/v"});
+}
+
+void write_axis(Hdf5File& file, const std::string& path, std::span<const double> values) {
+  file.write_array(path, values);
+  file.make_scale(path);
 }
 
 void write_axes(Hdf5File& file, const std::string& group, const quantities::PhaseField& field) {
   file.make_group(group);
-  file.write_array(group + "/x", field.x());
-  file.write_array(group + "/v", field.v());
+  write_axis(file, group + "/x", field.x());
+  write_axis(file, group + "/v", field.v());
 }
 
 void write_density(Hdf5File& file, const quantities::DensityField& field, double error) {
-  const auto write = [&file](const char* name, const auto& values, const char* meaning) {
-    const std::string path = fmt::format("/density/{}", name);
+  const auto write = [&file](const std::string& name, const auto& values, const std::string& axis,
+                             const char* meaning) {
+    const std::string path = "/density/" + name;
     file.write_array(path, values);
+    axis == name ? file.make_scale(path) : file.attach(path, {"/density/" + axis});
     file.attribute(path, "meaning", meaning);
   };
   write_axes(file, "/density", field.pdf);
-  write("weights", field.weights, "sum_j weights_j f(v_j) = integral of f");
-  write("cells", field.cells,
+  write("weights", field.weights, "v", "sum_j weights_j f(v_j) = integral of f");
+  write("cells", field.cells, "cells",
         "between two of them the density is the polynomial through the nodes there");
-  write("atom", field.atom, "P(X = x_i, V = 0 and sticking)");
-  write("marginal_x", field.noise_marginal,
+  write("atom", field.atom, "x", "P(X = x_i, V = 0 and sticking)");
+  write("marginal_x", field.noise_marginal, "x",
         "P(X = x_i), summed over the grid; of noise without levels, of the steps around x_i");
-  write("marginal_v", field.velocity_marginal, "density of V without its atom P_stick at 0");
+  write("marginal_v", field.velocity_marginal, "v", "density of V without its atom P_stick at 0");
   if (!field.states.empty()) {
-    write("state", field.states, "number of the state of each row, as the noise numbers them");
+    write("state", field.states, "x", "number of the state of each row, as the noise numbers them");
   }
-  write_field(file, "/density/pdf", field.pdf);
+  write_field(file, "/density", "pdf", field.pdf);
   file.attribute("/density/pdf", "meaning",
                  "P(X = x_i, V in dv)/dv by rows of x and columns of v, without the atom at v = 0");
   file.attribute("/density/pdf", "smallest_value", field.least);
   if (const auto& [p, pdf, atom, marginal] = field.position; !p.empty()) {
     file.make_group("/density/position");
-    write("position/p", p, "positions of the spring, evenly spaced");
-    write("position/atom", atom, "P(P in the step around p_i, V = 0 and sticking)");
-    write("position/marginal_p", marginal, "P(P in the step around p_i)");
+    write("position/p", p, "position/p", "positions of the spring, evenly spaced");
+    write("position/atom", atom, "position/p", "P(P in the step around p_i, V = 0 and sticking)");
+    write("position/marginal_p", marginal, "position/p", "P(P in the step around p_i)");
     std::vector<std::size_t> rows(pdf.size() / field.pdf.v().size());
     std::iota(rows.begin(), rows.end(), std::size_t{0});
     file.write_rows("/density/position/pdf", p.size(), field.pdf.v().size(), rows, pdf);
+    file.attach("/density/position/pdf", {"/density/position/p", "/density/v"});
     file.attribute("/density/position/pdf", "meaning",
                    "P(P in the step around p_i, V in dv)/dv by rows of p and columns of v");
   }
@@ -114,10 +127,14 @@ void write_path(Hdf5File& file, const simulation::Path& path) {
   file.make_group("/trajectory");
   file.attribute("/trajectory", "meaning",
                  "state just after each event; between events x and y stay and v follows the flow");
-  file.write_array("/trajectory/time", path.time);
-  file.write_array("/trajectory/x", path.x);
-  file.write_array("/trajectory/y", path.y);
-  file.write_array("/trajectory/v", path.v);
+  write_axis(file, "/trajectory/time", path.time);
+  const auto write = [&file](const std::string& name, std::span<const double> values) {
+    file.write_array("/trajectory/" + name, values);
+    file.attach("/trajectory/" + name, {"/trajectory/time"});
+  };
+  write("x", path.x);
+  write("y", path.y);
+  write("v", path.v);
 }
 
 void write_modes(Hdf5File& file, const quantities::RelaxationSector& sector) {
@@ -136,8 +153,8 @@ void write_modes(Hdf5File& file, const quantities::RelaxationSector& sector) {
     file.make_group(name);
     file.attribute(name, "rate", modes[n].rate.real());
     file.attribute(name, "frequency", modes[n].rate.imag());
-    write_field(file, name + "/real", modes[n].real);
-    write_field(file, name + "/imaginary", modes[n].imaginary);
+    write_field(file, group, fmt::format("mode_{}/real", n + 1), modes[n].real);
+    write_field(file, group, fmt::format("mode_{}/imaginary", n + 1), modes[n].imaginary);
     file.write_array(name + "/at_rest_real", real);
     file.write_array(name + "/at_rest_imaginary", imaginary);
   }
@@ -171,19 +188,27 @@ std::string hdf5_name(std::string key) {
 
 /// Writes a tree to a group of its own: objects as groups, texts and truths (yes, no) as attributes
 /// of their group, numbers and arrays of numbers as datasets, ci95 as two of them, low and high.
-/// Collective with equal trees.
+/// Values are over the array that precedes them, if there is one. Collective with equal trees.
 void write_tree(Hdf5File& file, const std::string& group, const Json& tree) {
-  const auto write = [&](const std::string& name, const Json& value) {
-    const std::string path = group + "/" + hdf5_name(name);
-    if (value.is_array()) return file.write_array(path, value.get<std::vector<double>>());
-    file.write_scalar(path, value.get<double>());
-  };
   // A pair for each value, or the only pair.
   const auto end_of = [](const Json& ci95, std::size_t end) {
     if (ci95.at(0).is_number()) return ci95[end];
     Json ends;
     for (const auto& pair : ci95) ends.push_back(pair[end]);
     return ends;
+  };
+  const bool has_axis = tree.contains("value") && tree.begin().key() != "value" &&
+                        tree.begin()->is_array() && tree["value"].is_array();
+  const std::string axis = has_axis ? group + "/" + hdf5_name(tree.begin().key()) : "";
+  const auto write = [&](const std::string& name, const Json& value) {
+    const std::string path = group + "/" + hdf5_name(name);
+    if (!value.is_array()) return file.write_scalar(path, value.get<double>());
+    file.write_array(path, value.get<std::vector<double>>());
+    if (path == axis) {
+      file.make_scale(path);
+    } else {
+      file.attach(path, {axis});
+    }
   };
   file.make_group(group);
   for (const auto& [name, value] : tree.items()) {
@@ -226,10 +251,12 @@ void write_study(Hdf5File& file, const Json& study) {
   write_tree(file, "/study", tree);
 }
 
-// A group with texts of its own.
+// A group with texts of its own. Some readers cannot take empty attributes, so there are none.
 void write_texts(Hdf5File& file, const std::string& group, const Texts& texts) {
   file.make_group(group);
-  for (const auto& [name, text] : texts) file.attribute(group, name, text);
+  for (const auto& [name, text] : texts) {
+    if (!text.empty()) file.attribute(group, name, text);
+  }
 }
 
 void write_grid(Hdf5File& file, const Grid& grid) {
@@ -237,6 +264,15 @@ void write_grid(Hdf5File& file, const Grid& grid) {
   for (const auto& array : grid.arrays) {
     const std::string path = "/sweep/" + hdf5_name(array.name);
     file.write_array(path, array.sizes, array.values);
+    std::vector<std::string> axes;
+    for (const auto& axis : array.axes) {
+      axes.push_back(axis.empty() ? "" : "/sweep/" + hdf5_name(axis));
+    }
+    if (axes == std::vector{path}) {
+      file.make_scale(path);
+    } else {
+      file.attach(path, axes);
+    }
     for (const auto& [name, text] : array.notes) file.attribute(path, name, text);
   }
 }
@@ -253,16 +289,22 @@ void write_results(Hdf5File& file, const Report& report) {
   if (report.density != nullptr) write_density(file, *report.density, report.speed_error);
 }
 
-void write_hdf5(const Report& report, const std::string& name) {
-  Hdf5File file(report.comm, name);
-  write_texts(file, "/record", report.provenance);
+void write_hdf5(const Report& report, const std::string& target) {
+  Hdf5File file(report.comm, target);
+  std::vector<std::string> unused;
+  for (const auto& [name, text] : report.options) {
+    if (text.empty()) unused.push_back(name);
+  }
+  Texts record = report.provenance;
+  record.emplace_back("warnings", fmt::format("{}", fmt::join(report.warnings, "\n")));
+  record.emplace_back("options_without_effect", fmt::format("{}", fmt::join(unused, ",")));
+  write_texts(file, "/record", record);
   write_texts(file, "/record/options", report.options);
   file.attribute("/record", "seconds", report.seconds);
-  file.attribute("/record", "warnings", fmt::format("{}", fmt::join(report.warnings, "\n")));
   report.grid ? write_grid(file, report.grid()) : write_results(file, report);
   file.commit();
   if (report.density == nullptr || linalg::rank(report.comm) != 0) return;
-  std::filesystem::path beside(name);
+  std::filesystem::path beside(target);
   const std::string text = xdmf(beside.filename().string(), *report.density);
   write_text(beside.replace_extension(".xdmf").string(), text);
 }
@@ -319,6 +361,20 @@ void Hdf5File::write_rows(const std::string& path, std::size_t row_count, std::s
     require(H5Dwrite(data, H5T_NATIVE_DOUBLE, memory_space, file_space, H5P_DEFAULT,
                      values.data() + n * columns),
             path);
+  }
+}
+
+void Hdf5File::make_scale(const std::string& path) {
+  const Hdf5Id scale = given(H5Dopen2(id_, path.c_str(), H5P_DEFAULT), H5Dclose, path);
+  require(H5DSset_scale(scale, path.substr(path.rfind('/') + 1).c_str()), path);
+}
+
+void Hdf5File::attach(const std::string& path, const std::vector<std::string>& axes) {
+  const Hdf5Id data = given(H5Dopen2(id_, path.c_str(), H5P_DEFAULT), H5Dclose, path);
+  for (unsigned n = 0; n < axes.size(); ++n) {
+    if (axes[n].empty()) continue;
+    const Hdf5Id scale = given(H5Dopen2(id_, axes[n].c_str(), H5P_DEFAULT), H5Dclose, axes[n]);
+    require(H5DSattach_scale(data, scale, n), path);
   }
 }
 

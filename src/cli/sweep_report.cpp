@@ -245,11 +245,40 @@ std::vector<std::vector<std::string>> rows_of(const Request& request,
   return rows;
 }
 
+// What a result is over at each point, if that is the same at all of them, or its beginning where a
+// point has less of it, as fewer slips; else nothing.
+std::vector<double> shared_abscissa(const std::vector<std::vector<double>>& at) {
+  std::vector<double> longest;
+  for (const auto& numbers : at)
+    longest = std::max(longest, numbers,
+                       [](const auto& a, const auto& b) { return a.size() < b.size(); });
+  const bool shared = std::ranges::all_of(at, [&](const auto& numbers) {
+    return std::equal(numbers.begin(), numbers.end(), longest.begin());
+  });
+  return shared ? longest : std::vector<double>{};
+}
+
+// The name of the array of a grid that labels the last index of results over such numbers, which is
+// added if it is missing; empty where the points differ in them.
+std::string inner_axis(Grid& grid, const std::string& name, const std::vector<double>& numbers) {
+  if (numbers.empty()) return "";
+  for (int n = 1;; ++n) {
+    const std::string own = n == 1 ? name : fmt::format("{}_{}", name, n);
+    const auto found = std::ranges::find(grid.arrays, own, &Array::name);
+    if (found == grid.arrays.end()) {
+      grid.arrays.push_back({own, {numbers.size()}, numbers, {}, {own}});
+      return own;
+    }
+    if (found->axes == std::vector{own} && found->values == numbers) return own;
+  }
+}
+
 // The last index is within a result. Arrays may differ in length from point to point, as the levels
 // at which sliding phases end do; NaN where there is nothing.
-Array array_of(const Column& column, std::vector<std::size_t> sizes) {
+Array array_of(const Column& column, std::vector<std::size_t> sizes,
+               std::vector<std::string> axes) {
   const Result& r = *column.result;
-  Array array{column.name, std::move(sizes), {}};
+  Array array{column.name, std::move(sizes), {}, {}, std::move(axes)};
   std::size_t length = 0;
   for (const auto& numbers : column.at) length = std::max(length, numbers.size());
   for (auto numbers : column.at) {
@@ -265,15 +294,24 @@ Array array_of(const Column& column, std::vector<std::size_t> sizes) {
 Grid grid_of(const Sweep& sweep, const std::vector<SweepPoint>& runs) {
   Grid grid;
   std::vector<std::size_t> sizes;
-  std::string names;
+  std::vector<std::string> axes;
   for (const auto& axis : sweep.axes()) {
     sizes.push_back(axis.values.size());
-    grid.arrays.push_back({axis.option, {axis.values.size()}, axis.values});
+    axes.push_back(axis.option);
+    grid.arrays.push_back({axis.option, {axis.values.size()}, axis.values, {}, {axis.option}});
     if (!axis.unit.empty()) grid.arrays.back().notes.emplace_back("unit", axis.unit);
-    names += (names.empty() ? "" : ",") + axis.option;
   }
-  grid.notes.emplace_back("axes", names);
-  for (const auto& column : columns_of(runs)) grid.arrays.push_back(array_of(column, sizes));
+  grid.notes.emplace_back("axes", fmt::format("{}", fmt::join(axes, ",")));
+  const auto columns = columns_of(runs);
+  for (const auto& column : columns) {
+    const Result& r = *column.result;
+    auto own = axes;
+    if (!r.is_scalar()) {
+      const auto over = std::ranges::find(columns, r.key + "_" + r.abscissa_name, &Column::name);
+      own.push_back(inner_axis(grid, r.abscissa_name, shared_abscissa(over->at)));
+    }
+    grid.arrays.push_back(array_of(column, sizes, own));
+  }
   std::vector<double> status, seconds;
   for (const auto& run : runs) {
     status.push_back(static_cast<double>(run.status));
@@ -283,8 +321,9 @@ Grid grid_of(const Sweep& sweep, const std::vector<SweepPoint>& runs) {
       {"status",
        sizes,
        status,
-       {{"meaning", "0 reached, 1 not reached, 2 failed, 3 no memory, 4 refused"}}});
-  grid.arrays.push_back({"seconds", sizes, seconds});
+       {{"meaning", "0 reached, 1 not reached, 2 failed, 3 no memory, 4 refused"}},
+       axes});
+  grid.arrays.push_back({"seconds", sizes, seconds, {}, axes});
   return grid;
 }
 

@@ -335,6 +335,26 @@ class Hdf5(Case):
             self.assertEqual(file["record/options"].attrs["delta"], "0.5")
             self.assertIn("commit", file["record"].attrs)
 
+    def test_axes_are_dimension_scales(self):
+        asked = ("-quantities", "density,spectrum,relaxation,trajectory", "-omega", "1,2,4", "-accuracy", "1e-2")
+        self.run_ok(*SMALL, *asked, "-output", "run.h5")
+        self.run_ok(*SMALL, *asked[:4], "-sweep_tau", "1,2", "-quantities", "slip,spectrum", "-distance", "0.1,0.3",
+                    "-output", "sweep.h5")
+        axes = {"run": {"density/pdf": ["x", "v"], "density/atom": ["x"], "density/weights": ["v"],
+                        "relaxation_odd/mode_1/real": ["x", "v"], "trajectory/v": ["time"],
+                        "results/S_v/value": ["omega"], "results/S_v/error": ["omega"], "results/S_0/value": []},
+                "sweep": {"sweep/S_v": ["tau", "omega"], "sweep/S_v_error": ["tau", "omega"],
+                          "sweep/cdf_slip": ["tau", "distance"], "sweep/seconds": ["tau"]}}
+        for name, held in axes.items():
+            with h5py.File(self.folder / f"{name}.h5") as file:
+                for path, names in held.items():
+                    found = [dim[0].name.rpartition("/")[2] for dim in file[path].dims]
+                    self.assertEqual(found, names, path)
+                empty = []
+                file.visititems(lambda path, item: empty.extend(k for k, value in item.attrs.items() if str(value) == ""))
+                self.assertEqual(empty, [], name)
+                self.assertIn("noise_file", file["record"].attrs["options_without_effect"].split(","))
+
     def test_density(self):
         for program in PROGRAMS:
             s = self.summary(*self.OPTIONS, "-output", "out.h5", program=program)

@@ -10,6 +10,7 @@ from running import SOURCES, Case
 PAGE = (SOURCES / "docs" / "output.md").read_text()
 SMALL = ("-mu_d", "0.25", "-delta", "0.5")
 # Named by what they are: options, results, parameters of the model.
+SCALES = {"CLASS", "NAME", "REFERENCE_LIST", "DIMENSION_LIST"}  # attributes by which HDF5 names axes
 OWN_NAMES = {"options", "results", "scene", "axes", "tables", "provenance"}
 
 
@@ -55,7 +56,7 @@ class Keys(Case):
                     parts[1:2] = []
                 if parts[0] not in ("record", "study"):
                     found.extend(part for part in parts if not re.fullmatch(r"mode_\d", part))
-                    found.extend(item.attrs)
+                    found.extend(set(item.attrs) - SCALES)
             with h5py.File(self.folder / file) as f:
                 f.visititems(visit)
             return found

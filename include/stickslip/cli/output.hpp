@@ -76,6 +76,9 @@ struct Array {
   std::vector<std::size_t> sizes;
   std::vector<double> values;
   Texts notes = {};  ///< such as its unit
+  /// Names of the arrays that label its indices, its own of one that labels; empty where an index
+  /// has none.
+  std::vector<std::string> axes = {};
 };
 
 /// Arrays that belong together.
