@@ -289,7 +289,7 @@ void write_results(Hdf5File& file, const Report& report) {
   if (report.density != nullptr) write_density(file, *report.density, report.speed_error);
 }
 
-void write_hdf5(const Report& report, const std::string& target) {
+void write_whole(const Report& report, const std::string& target) {
   Hdf5File file(report.comm, target);
   std::vector<std::string> unused;
   for (const auto& [name, text] : report.options) {
@@ -303,6 +303,20 @@ void write_hdf5(const Report& report, const std::string& target) {
   file.attribute("/record", "seconds", report.seconds);
   report.grid ? write_grid(file, report.grid()) : write_results(file, report);
   file.commit();
+}
+
+// HDF5 does not hand on what the system says.
+void write_hdf5(const Report& report, const std::string& target) {
+  try {
+    write_whole(report, target);
+  } catch (const SystemFailure& failure) {
+    std::error_code unknown;
+    const auto folder = std::filesystem::absolute(target, unknown).parent_path();
+    constexpr std::uintmax_t least = 1 << 20;
+    const bool full = std::filesystem::space(folder, unknown).available < least;
+    throw SystemFailure(fmt::format("cannot write {}: {}{}", target, failure.what(),
+                                    full ? "; no space is left on the device" : ""));
+  }
   if (report.density == nullptr || linalg::rank(report.comm) != 0) return;
   std::filesystem::path beside(target);
   const std::string text = xdmf(beside.filename().string(), *report.density);
@@ -315,7 +329,10 @@ Hdf5File::Hdf5File(MPI_Comm comm, const std::string& target)
     : comm_(comm), file_(target, shared_tag(comm)) {
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // failures are reported by exceptions
   const Hdf5Id access = given(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "a list of properties");
-  require(H5Pset_fapl_mpio(access, comm, MPI_INFO_NULL), file_.part());
+  // MPI adds words of its own to those of a full disk; a single process does without it.
+  if (linalg::ranks(comm) > 1) {
+    require(H5Pset_fapl_mpio(access, comm, MPI_INFO_NULL), file_.part());
+  }
   id_ = H5Fcreate(file_.part().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access);
   if (id_ < 0) throw SystemFailure("cannot create " + file_.part());
 }

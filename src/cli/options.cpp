@@ -511,6 +511,16 @@ std::vector<std::string> all_names() {
   return names;
 }
 
+std::map<std::string, std::string>& stated_places() {
+  static std::map<std::string, std::string> places;
+  return places;
+}
+
+std::string stated_in_file(const std::string& name) {
+  const auto found = stated_places().find(name);
+  return found == stated_places().end() ? "" : fmt::format(" ({})", found->second);
+}
+
 void Problems::add(const Option& option, const std::string& value, const std::string& why,
                    const std::string& fix) {
   constexpr std::size_t longest = 200;  // of values that a message repeats
@@ -518,7 +528,7 @@ void Problems::add(const Option& option, const std::string& value, const std::st
   std::string message =
       fmt::format("-{}{}: {}", option.name, shown.empty() ? "" : " = " + shown, why);
   if (!fix.empty()) message += "; " + fix;
-  add(message);
+  add(message + stated_in_file(option.name));
 }
 
 void Problems::raise() const {

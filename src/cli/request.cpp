@@ -78,13 +78,36 @@ std::optional<std::string> included_file(std::string line) {
   return words[1];
 }
 
+// What PETSc would do to quotes in silence; empty if nothing is wrong with them.
+std::string unfit_quotes(const std::string& line) {
+  bool open = false;
+  for (const char c : line) {
+    if (c == '#' && open) {
+      return "has a # in quotes, behind which PETSc takes the rest for a comment; take a name "
+             "without #";
+    }
+    if (c == '#') break;
+    open = open != (c == '"');
+  }
+  return open ? "has a quote that is not closed; write \"...\"" : "";
+}
+
+// Remembers where a line states an option.
 void check_line(const std::string& line, const std::string& place, Problems& problems) {
   const auto first = line.find_first_not_of(" \t\r");
+  if (const auto unfit = unfit_quotes(line); !unfit.empty()) {
+    return problems.add(fmt::format("{}: {}", place, unfit));
+  }
   if (const auto better = better_formula(line); !better.empty()) {
     problems.add(fmt::format("{}: the value looks like an option; put a blank before it: {}", place,
                              better));
   }
-  if (first == line.npos || line[first] == '#' || line[first] == '-') return;
+  if (first == line.npos || line[first] == '#') return;
+  if (line[first] == '-') {
+    const auto name = line.substr(first + 1, line.find_first_of(" \t\r#", first) - first - 1);
+    stated_places()[name] = place;
+    return;
+  }
   problems.add(fmt::format("{}: \"{}\" does not start with -name; put a # before comments", place,
                            line.substr(first, 40)));
 }
@@ -471,9 +494,9 @@ void check_solver_options(Problems& problems) {
   for (const auto& message : linalg::wrong_solver_options()) problems.add(message);
   for (const auto& name : linalg::unused_options()) {
     const std::string message = linalg::unknown_solver_option(name);
-    problems.add(message.empty()
-                     ? fmt::format("-{}: unknown option; {}", name, suggestion_for_option(name))
-                     : message);
+    problems.add(message.empty() ? fmt::format("-{}: unknown option; {}{}", name,
+                                               suggestion_for_option(name), stated_in_file(name))
+                                 : message);
   }
 }
 
@@ -503,6 +526,7 @@ void shield_formulas(std::vector<std::string>& argv) {
 
 void check_options_files(const std::vector<std::string>& argv) {
   Problems problems;
+  stated_places().clear();
   for (std::size_t n = 0; n < argv.size(); ++n) {
     if (argv[n] != "-options_file") continue;
     if (n + 1 == argv.size()) {
@@ -510,6 +534,9 @@ void check_options_files(const std::vector<std::string>& argv) {
       break;
     }
     check_options_file(argv[n + 1], {}, problems);
+  }
+  for (const auto& word : argv) {  // which takes the place of what files say
+    if (is_option_name(word)) stated_places().erase(word.substr(1));
   }
   problems.raise();
 }

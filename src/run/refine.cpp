@@ -495,15 +495,26 @@ class Refiner {
     return *std::ranges::find(outcome_.results, step.limiting_key, &quantities::Result::key);
   }
 
+  // Who sets a solver by hand looks there first.
+  [[nodiscard]] static std::string no_digit() {
+    std::string doubted;
+    for (const auto& [name, value] : linalg::given_solver_options()) {
+      doubted += fmt::format("{}-{} {}", doubted.empty() ? "" : ", ", name, value);
+    }
+    return doubted.empty()
+               ? "; no digit of it is certain: leave it out"
+               : fmt::format("; no digit of it is certain, with {}: leave that out", doubted);
+  }
+
   void give_up(const Step& step, double rounding) {
     const std::string& key = step.limiting_key;
     const auto& result = limiting(step);
     const double least = std::max(rounding, step.estimate);
     if (2 * least > outcome_.attainable) {
       outcome_.attainable = 2 * least;
-      limit_ = fmt::format("{} the relative error of {}{} to {:.1e}{}", what_limits(result), key,
-                           quantities::where_unknown(result), least,
-                           least < kLoosest ? "" : "; no digit of it is certain: leave it out");
+      limit_ =
+          fmt::format("{} the relative error of {}{} to {:.1e}{}", what_limits(result), key,
+                      quantities::where_unknown(result), least, least < kLoosest ? "" : no_digit());
     }
     given_up_.insert(key);
     if (!over_modes(result)) return;

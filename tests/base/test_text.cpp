@@ -10,6 +10,7 @@ TEST_CASE("nearest word: a slip finds its target, nonsense finds none") {
   const std::vector<std::string> names{"-delta", "-mu_d", "-mu_s", "-tau"};
   CHECK(nearest_word("-detla", names) == "-delta");
   CHECK(nearest_word("-mud", names) == "-mu_d");
+  CHECK(nearest_word("-tua", names) == "-tau");
   CHECK(nearest_word("-temperature", names).empty());
 }
 

@@ -143,6 +143,9 @@ class Refusals(Case):
         broken = self.folder / "broken.opts"
         for text, message in ((b"-mu_s 1\nmu_d 0.5\n", "broken.opts:2"), (b"\xef\xbb\xbf-mu_d 1\n", "byte order mark"),
                               (b"-mu_s 1\n\0\x1b[2J\n", "broken.opts:2: is no text"),
+                              (b'-mu_s 1\n-output "run # 3.h5"\n', "broken.opts:2: has a # in quotes"),
+                              (b'-output "run.h5\n', "broken.opts:1: has a quote that is not closed"),
+                              (b"-mu_s 1\n-tau -1\n", f"({broken}:2)"), (b"-tua 1\n", f"did you mean -tau? ({broken}:1)"),
                               (b"-mu_s 1 -mu_d 0.5\n", "write one -name value a line")):
             broken.write_bytes(text)
             self.refuse("-options_file", broken, message=(message,))

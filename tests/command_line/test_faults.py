@@ -163,6 +163,7 @@ class Disks(Faults):
             (self.folder / name).write_text("old")
             status, message = self.limited(resource.RLIMIT_FSIZE, 2000, *DENSITY[:-2], option, name)
             self.check_too_large(status, message, name)
+            self.assertIn(f"cannot write {name}", message)
             (self.folder / name).unlink()
         (self.folder / "o.h5").write_text("old")
         self.check_too_large(*self.limited(resource.RLIMIT_FSIZE, 10000, *DENSITY, "-output",

@@ -80,6 +80,13 @@ struct Synonyms {
 /// "did you mean ou?", of a word that the option does not have; empty if none is near.
 [[nodiscard]] std::string suggestion_for_word(const Option& option, const std::string& word);
 
+/// "scene.opts:3" by the names of options (without dash) that count as files of -options_file state
+/// them.
+[[nodiscard]] std::map<std::string, std::string>& stated_places();
+
+/// " (scene.opts:3)", for the end of a message about an option; empty if no file states it.
+[[nodiscard]] std::string stated_in_file(const std::string& name);
+
 /// Messages about everything that is wrong with the input, reported together.
 class Problems {
  public:
