@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <map>
 #include <numeric>
 #include <utility>
 
@@ -332,23 +333,30 @@ linalg::VecHandle KolmogorovOperator::square_field(Vec u, const std::vector<doub
   return f;
 }
 
-linalg::VecHandle KolmogorovOperator::values(const Observable& f) const {
+linalg::VecHandle KolmogorovOperator::values(const Observable& f, bool averaged) const {
   linalg::VecHandle result = zeros();
   linalg::WriteView local(result);
   const model::NoiseChain& chain = discretisation().process.noise;
   const VelocityDiscretisation& velocities = *discretisation().velocities;
   PetscInt at = 0;
+  std::map<std::pair<double, double>, std::vector<double>> means;  // by y and v
+  const auto value = [&](int i, double y, double v) {
+    if (!averaged) return f(chain.noise(i), y, v);
+    auto& known = means[{y, v}];
+    if (known.empty()) known = chain.means([&](double x) { return f(x, y, v); });
+    return known[i - chain.lowest()];
+  };
   states().for_each_local([&](const State& s) {
     const int sign = s.branch == Branch::positive ? 1 : -1;
     if (s.kind == StateKind::static_phase) {
-      local[at++] = f(chain.noise(s.noise), 0, 0);
+      local[at++] = value(s.noise, 0, 0);
       return;
     }
     double v = 0;
     if (s.kind == StateKind::node) v = sign * velocities.nodes()[s.node];
     if (s.kind == StateKind::holding) v = sign * velocities.v_max();
-    local[at++] = nodes_along(s.branch).projected(
-        s.noise, [&](int i) { return f(chain.noise(sign * i), sign, v); });
+    local[at++] =
+        nodes_along(s.branch).projected(s.noise, [&](int i) { return value(sign * i, sign, v); });
   });
   return result;
 }

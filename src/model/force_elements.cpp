@@ -166,7 +166,9 @@ ForceMesh force_mesh(const std::vector<SpecialForce>& special, double reach, dou
 }
 
 AlongForce::AlongForce(const ForceMesh& mesh, const std::vector<double>& at, Weight weight)
-    : stiffness(nodes_of(mesh, at), nodes_of(mesh, at)), slope(stiffness.rows(), stiffness.rows()) {
+    : stiffness(nodes_of(mesh, at), nodes_of(mesh, at)),
+      slope(stiffness.rows(), stiffness.rows()),
+      weight_(weight) {
   std::vector<double> lengths;
   for (std::size_t e = 0; e < mesh.degrees.size(); ++e) {
     const bool cut = std::find(at.begin(), at.end(), mesh.ends[e]) != at.end();
@@ -177,6 +179,68 @@ AlongForce::AlongForce(const ForceMesh& mesh, const std::vector<double>& at, Wei
     append({mesh.ends[e], mesh.ends[e + 1], mesh.degrees[e], weight}, cut || e == 0);
   }
   for (std::size_t n = 0; n < cuts.size(); ++n) tie(cuts[n], lengths[n]);
+}
+
+namespace {
+
+/// Integrals of f times each function of an element and the weight, by halves until both agree with
+/// the whole. Halves of a jump never do: they end where they are too small to count.
+class Halving {
+ public:
+  Halving(const ForceElement& element, Weight weight, const FunctionOfNoise& f)
+      : element_(element), weight_(weight), f_(f) {}
+  [[nodiscard]] std::vector<double> integrals() {
+    const double low = element_.z.front(), high = element_.z.back();
+    const auto whole = rule(low, high);
+    tolerance_ = 1e-10 * size_ * (high - low);
+    return refined(low, high, whole);
+  }
+
+ private:
+  std::vector<double> rule(double low, double high) {
+    static const LegendreRule gauss(9);
+    std::vector<double> sums(element_.z.size(), 0.0);
+    for (std::size_t n = 0; n < gauss.node.size(); ++n) {
+      const double z = (low + high) / 2 + gauss.node[n] * (high - low) / 2,
+                   value = f_(z) * weight_(z);
+      size_ = std::max(size_, std::abs(value));
+      const double part = gauss.weight[n] * value * (high - low) / 2;
+      for (std::size_t k = 0; k < sums.size(); ++k) sums[k] += part * element_.cardinal(k, z);
+    }
+    return sums;
+  }
+  std::vector<double> refined(double low, double high, const std::vector<double>& whole) {
+    const double middle = (low + high) / 2;
+    auto lower = rule(low, middle), upper = rule(middle, high);
+    double change = 0;
+    for (std::size_t k = 0; k < whole.size(); ++k) {
+      change = std::max(change, std::abs(lower[k] + upper[k] - whole[k]));
+    }
+    if (change > tolerance_ && --left_ >= 0) {
+      lower = refined(low, middle, lower);
+      upper = refined(middle, high, upper);
+    }
+    for (std::size_t k = 0; k < whole.size(); ++k) lower[k] += upper[k];
+    return lower;
+  }
+
+  const ForceElement& element_;
+  Weight weight_;
+  const FunctionOfNoise& f_;
+  double size_ = 0, tolerance_ = 0;
+  int left_ = 300;  // halves, for what no piece is smooth of
+};
+
+}  // namespace
+
+std::vector<double> AlongForce::means(const FunctionOfNoise& f) const {
+  std::vector<double> sums(w.size(), 0.0);
+  for (const auto& [first, element] : elements) {
+    int node = first;
+    for (double part : Halving(element, weight_, f).integrals()) sums[node++] += part;
+  }
+  for (std::size_t k = 0; k < w.size(); ++k) sums[k] /= w[k];
+  return sums;
 }
 
 int AlongForce::nodes_of(const ForceMesh& mesh, const std::vector<double>& cuts) {

@@ -342,7 +342,8 @@ Projection GaussianNoise::projection(const Thresholds& thresholds, int order) co
     throw UnfitTable(terms_.size(), fmt::format("the terms take {} nodes, and at most {} are taken",
                                                 grid.nodes(), kMostNodes));
   }
-  const AlongForce x(grid.mesh, grid.cuts, normal_weight);
+  const auto kept = std::make_shared<const AlongForce>(grid.mesh, grid.cuts, normal_weight);
+  const AlongForce& x = *kept;
   const Across y(a_, grid.modes);
   Projection made;
   made.deviation = deviation_;
@@ -360,6 +361,13 @@ Projection GaussianNoise::projection(const Thresholds& thresholds, int order) co
       made.probability.push_back(x.w[k] / total * weight);
     }
   }
+  made.means = [kept, across = y.weight.size(), scale = deviation_](const FunctionOfNoise& f) {
+    std::vector<double> all;
+    for (double mean : kept->means([&](double z) { return f(scale * z); })) {
+      all.insert(all.end(), across, mean);
+    }
+    return all;
+  };
   made.shown = shown_by(x, static_cast<int>(y.weight.size()), deviation_);
   const Dense rates = rates_of(a_(0, 0), x, y);
   const int count = rates.rows();

@@ -153,6 +153,7 @@ LevelTable LevelTable::of(const Projection& projection) {
                           {&table.by_position_, &projection.by_position}}) {
     if (!of->x.empty()) *part = std::make_shared<const Shown>(*of);
   }
+  table.means_ = projection.means;
   table.position_ = projection.position;
   table.noise_ = projection.noise;
   if (table.has_positions()) {
@@ -322,6 +323,13 @@ LevelTable LevelTable::mirrored() const {
   for (auto* values : {&other.position_, &other.noise_}) {
     std::reverse(values->begin(), values->end());
     for (double& value : *values) value = -value;
+  }
+  if (means_) {
+    other.means_ = [means = means_](const FunctionOfNoise& f) {
+      auto all = means([&f](double noise) { return f(-noise); });
+      std::reverse(all.begin(), all.end());
+      return all;
+    };
   }
   std::reverse(other.probability_.begin(), other.probability_.end());
   std::reverse(other.order_.begin(), other.order_.end());

@@ -281,7 +281,8 @@ Shown Spring::shown_by(const AlongForce& x, const std::vector<double>& positions
 Projection Spring::of_coloured(const Thresholds& thresholds, int order) const {
   const double scale = scales_.force, k = body_.stiffness;
   const ForceLayout grid = forces_of(thresholds, scale, reach(order), order);
-  AlongForce x(grid.mesh, grid.cuts, even_weight);
+  const auto kept = std::make_shared<AlongForce>(grid.mesh, grid.cuts, even_weight);
+  AlongForce& x = *kept;
   const Positions y(ends_of_positions(thresholds, order), nodes_of_element(order), false);
   Projection made;
   made.even = made.reversed = thresholds.alike_both_ways();
@@ -323,6 +324,14 @@ Projection Spring::of_coloured(const Thresholds& thresholds, int order) const {
   made.intensity = made.peak_intensity = noise_.deviation * noise_.deviation * noise_.tau;
   made.step = grid.finest * scale;
   made.rate = 2 * diffusion / (grid.finest * grid.finest);
+  made.means = [kept, scale, k, p = y.p](const FunctionOfNoise& f) {
+    std::vector<double> all(kept->w.size() * p.size());
+    for (std::size_t j = 0; j < p.size(); ++j) {
+      const auto means = kept->means([&](double z) { return f(scale * z + k * p[j]); });
+      for (std::size_t a = 0; a < means.size(); ++a) all[a * p.size() + j] = means[a];
+    }
+    return all;
+  };
   made.shown = shown_by(x, y.p);
   made.by_position = y.shown(body_.bias / k, along,
                              [across](std::size_t a, std::size_t j) { return a * across + j; });

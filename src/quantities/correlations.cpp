@@ -72,7 +72,8 @@ Expectation expectation(generator::Systems& systems, const StationaryDistributio
     // Without its odd part, where states of both signs are kept although that has no mean.
     const bool even = symmetry == Symmetry::none && model::mirrors_itself(systems.process(), start);
     const auto part = generator::part_of(f, even ? Symmetry::even : symmetry);
-    const linalg::VecHandle b = a.values(part);
+    const bool rough = f.formula != nullptr;
+    const linalg::VecHandle b = a.values(part, rough);
     const linalg::VecHandle pi = distribution.occupation_on(a), square = a.zeros();
     check(VecScale(pi, 1 / distribution.excursion().mean_excursion()));
     check(VecPointwiseMult(square, b, b));
@@ -81,7 +82,7 @@ Expectation expectation(generator::Systems& systems, const StationaryDistributio
     unseen += overlooked;
     if (symmetry != Symmetry::odd) {
       const auto mean = generator::part_with_mean(f, systems.process());
-      result.stationary = dot(pi, a.values(mean));
+      result.stationary = dot(pi, a.values(mean, rough));
       result.unseen = std::abs(dot(pi, a.overlooked(mean)));
     }
     if (unit == 0) continue;

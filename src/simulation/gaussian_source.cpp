@@ -230,8 +230,7 @@ class GaussianSource final : public PathSource {
     steps_ = steps_of(noise_, deviation_, std::ldexp(longest, -kHalvings), kHalvings + 1);
   }
 
-  void draw(RandomStream& random, int level, double place, Excursion& e) override {
-    place_ = place;
+  void draw(RandomStream& random, int level, double, Excursion& e) override {
     draw_from(level, random, e);
   }
 
@@ -297,12 +296,11 @@ class GaussianSource final : public PathSource {
         cut(share, random.normal() * std::sqrt(piece.time * (1 - share)));
       }
       follow(e, piece, mean, x() - from, piece.end - speed);
-      follow_noise(e, piece.time, from, x());
-      observe(e, &Integrals::slide, piece.time, {from, sign_ * speed}, {x(), sign_ * piece.end},
-              sign_);
+      observe(random, e, &Integrals::slide, piece.time, {from, sign_ * speed},
+              {x(), sign_ * piece.end}, sign_);
       speed = piece.end;
       if (!piece.stopped) continue;
-      if (!cuts) rest(e, time - piece.time, x());
+      if (!cuts) rest(random, e, time - piece.time, x());
       if (room(-sign_) >= 0) return;
       sign_ = -sign_;  // pushed on the other way
     }
@@ -338,7 +336,7 @@ class GaussianSource final : public PathSource {
         const double there = (sign_ * side(sign_).start + held()) / deviation_;
         cut(share, (there - before_[0] - share * (now_[0] - before_[0])) / noise_.b[0]);
       }
-      rest(e, std::min(share, 1.0) * steps_[k_].time, from);
+      rest(random, e, std::min(share, 1.0) * steps_[k_].time, from);
       ++e.jumps;
     }
   }
@@ -352,11 +350,10 @@ class GaussianSource final : public PathSource {
     return before > 0 ? arrival(random, before, std::abs(after), variance) : 0;
   }
 
-  void rest(Excursion& e, double time, double from) {
+  void rest(RandomStream& random, Excursion& e, double time, double from) {
     e.stick += time;
     if constexpr (kTied<Flow>) follow_position(e, p_, (from + x()) / 2, 0, {{.time = time}});
-    follow_noise(e, time, from, x());
-    observe(e, &Integrals::stick, time, {from, 0}, {x(), 0}, 0);
+    observe(random, e, &Integrals::stick, time, {from, 0}, {x(), 0}, 0);
   }
 
   [[nodiscard]] double drift() const {
@@ -413,28 +410,60 @@ class GaussianSource final : public PathSource {
     e.product += sign_ * mean * path + bend * rise;
   }
 
-  // Halves of both ends, and half of one that stands on the threshold.
-  void follow_noise(Excursion& e, double time, double from, double to) const {
-    if (!wanted_.noise) return;
-    e.noise_square += time / 2 * (from * from + to * to);
-    for (double x : {from, to}) {
-      const double inside = within_ - std::abs(x);
-      e.within += time / 2 * (std::abs(inside) < 1e-9 * within_ ? 0.5 : inside > 0 ? 1 : 0);
-    }
-  }
-
   struct At {
     double x, v;
   };
-  // Either end of a step.
-  void observe(Excursion& e, double Integrals::*part, double time, const At& from, const At& to,
-               int y) {
-    if (wanted_.observables.empty()) return;
-    place_ = std::fmod(place_ + 0.6180339887498949, 1);
-    const At& at = place_ < 0.5 ? from : to;
+  // At a moment of a step, whose length depends on where it begins: what stands at its ends counts
+  // too often where steps are long.
+  void observe(RandomStream& random, Excursion& e, double Integrals::*part, double time,
+               const At& from, const At& to, int y) {
+    if (wanted_.observables.empty() && !wanted_.noise) return;
+    const double share = random.uniform(), v = from.v + share * (to.v - from.v),
+                 x = y == 0 ? at_rest(random, from.x, to.x, time, share)
+                            : bridge(random, from.x, to.x, time, share);
+    e.noise_square += time * x * x;
+    e.within += std::abs(x) <= within_ ? time : 0;
     for (std::size_t f = 0; f < wanted_.observables.size(); ++f) {
-      e.integrals[f].*part += time * wanted_.observables[f](at.x, y, at.v);
+      e.integrals[f].*part += time * wanted_.observables[f](x, y, v);
     }
+  }
+
+  [[nodiscard]] double spread(double time, double share) const {
+    return diffusion_ * std::sqrt(time * share * (1 - share));
+  }
+  // Between the ends the noise is a Brownian bridge.
+  [[nodiscard]] double bridge(RandomStream& random, double from, double to, double time,
+                              double share) const {
+    return from + share * (to - from) + spread(time, share) * random.normal();
+  }
+
+  // The same of a path that meets no threshold; or that ends on one, which it meets there for the
+  // first time: its distance is a Bessel bridge of dimension 3.
+  [[nodiscard]] double at_rest(RandomStream& random, double from, double to, double time,
+                               double share) const {
+    const std::array starts{side(1).start + held(), held() - side(-1).start};
+    for (double start : starts) {
+      if (std::abs(to - start) > 1e-9 * deviation_) continue;
+      const double s = spread(time, share), away = (1 - share) * (from - start);
+      return start + std::copysign(std::hypot(away + s * random.normal(), s * random.normal(),
+                                              s * random.normal()),
+                                   from - start);
+    }
+    // Where bodies come to rest beyond a threshold, as in the shortest steps they may, none fits.
+    constexpr int tries = 100;
+    const double variance = diffusion_ * diffusion_ * time;
+    for (int n = 0; n < tries && variance > 0; ++n) {
+      const double x = bridge(random, from, to, time, share);
+      double kept = 1;
+      for (double start : starts) {
+        const auto missed = [&](double end, double part) {
+          return 1 - std::exp(-2 * (start - x) * (start - end) / (part * variance));
+        };
+        kept *= std::max(missed(from, share), 0.0) * std::max(missed(to, 1 - share), 0.0);
+      }
+      if (random.uniform() < kept) return x;
+    }
+    return from;
   }
 
   Wanted wanted_;
@@ -446,7 +475,7 @@ class GaussianSource final : public PathSource {
   double within_, stiffness_, centre_;
   std::vector<Step> steps_;
   std::vector<double> now_, before_, normal_;  // Z, and the integral of X over the last step
-  double p_ = 0, place_ = 0;
+  double p_ = 0;
   int k_ = 0, sign_ = 1;
 };
 

@@ -54,6 +54,19 @@ class Noises(Case):
                 self.assertLess(found["error"], float(options[-1]) * value)
             self.assertEqual(summary["results"]["E_V"]["value"], 0)
 
+    def test_observables_that_jump_with_the_noise(self):
+        """No node of the force stands at a jump, and no step of a path ends there."""
+        case = ("-noise", "ou", "-delta", "0", "-mu_d", "0.5", "-quantities", "averages", "-observable", "(abs(x)<0.1)")
+        solved = self.summary(*case, "-accuracy", "1e-5")["results"]
+        found = solved["pi((abs(x)<0.1))"]
+        self.assertLess(abs(found["value"] - math.erf(0.1 / math.sqrt(2))), found["error"] + 1e-10)
+        self.assertLess(found["error"], 1e-6)
+        simulated = self.summary(*case, "-route", "monte_carlo", "-excursions", "8000", "-seed", "1")["results"]
+        for part in ("stick", "slide"):
+            exact, path = (results[f"pi((abs(x)<0.1)|{part})"] for results in (solved, simulated))
+            self.assertLess(abs(path["value"] - exact["value"]), 2 * path["error"], part)
+            self.assertLess(path["error"], 0.03 * exact["value"])
+
     def test_what_gaussian_noise_takes(self):
         noise = ("-noise", "gaussian", "-covariance")
         (self.folder / "terms.csv").write_text("amplitude,decay,frequency,sine\n1,1,0,0\n")
@@ -136,6 +149,8 @@ class Noises(Case):
         self.refuse(*self.BAND, "-delta", "1", message=("-delta = 1", "a step between levels", "lattice(delta)"))
         self.refuse("-delta", "0", "-noise_levels", "5", message=("-noise_levels = 5: counts levels", "leave it out"))
         self.refuse("-delta", "0", "-study", "delta", message=("needs a noise of levels", "such as 0.125"))
+        self.refuse("-noise", "gaussian+ou", "-covariance", "1,1", "-delta", "0", "-study", "delta",
+                    message=("needs a noise of levels", "take a chain"))
         smooth = (*self.BAND[:-3], "0.001", "-mu_d", "0.5")
         self.refuse(*smooth, message=("-band_width = 0.001: the covariance falls", "too smooth", "take a larger"))
         both = ("-noise", "narrow_band+telegraph", *self.BAND[2:], "-telegraph_amplitude", "1", "-telegraph_rate", "1")

@@ -30,7 +30,7 @@ from entry import Entry  # which finds the package
 from harness import words_of
 from drawn import drawn, in_files
 from identities import IDENTITIES
-from relations import EXACT, TRANSFORMATIONS
+from relations import TRANSFORMATIONS, exactness
 from values import Answer, Value, ratio
 
 import stickslip
@@ -73,9 +73,9 @@ class Runner:
         return shlex.join(["stickslip", *words_of(in_files(options, self.entry))])
 
 
-def compared(name, answer, other, back):
+def compared(exact, answer, other, back):
     """(key, ratio) of what both have."""
-    if name in EXACT and other.status != answer.status:
+    if exact and other.status != answer.status:
         yield f"status {answer.status}, {other.status}", float("inf")
     for key, value in other.values.items():
         found = back(key, value, other)
@@ -83,8 +83,8 @@ def compared(name, answer, other, back):
             continue
         key, value = found
         mine = answer.values[key]
-        if name in EXACT:
-            size = EXACT[name] * max(abs(mine.value).ravel(), default=0)
+        if exact:
+            size = exact * max(abs(mine.value).ravel(), default=0)
             mine, value = Value(mine.value, size), Value(value.value, 0)
         if (times := ratio(mine, value)) is not None:
             yield key, times
@@ -103,7 +103,7 @@ def transformed(run, name, options, answer, draw):
             return None
         return [(name, f"refused: {reason}", float("inf"), run.command(options), run.command(other))]
     return [(name, key, times, run.command(options), run.command(other))
-            for key, times in compared(name, answer, found, back)]
+            for key, times in compared(exactness(name, options), answer, found, back)]
 
 
 def identical(run, name, options, draw):

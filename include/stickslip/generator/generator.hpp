@@ -138,9 +138,10 @@ class KolmogorovOperator {
   [[nodiscard]] linalg::VecHandle square_field(Vec u, const std::vector<double>& s) const;
 
   /// f(x, y, v) on all states, projected on noise nodes: products with occupations are those of
-  /// the measures that they stand for, whatever f is. Collective. O(levels velocity nodes).
+  /// the measures that they stand for, whatever f is; on nodes of noise of continuous paths if f is
+  /// smooth, or `averaged`. Collective. O(levels velocity nodes), averaged a hundred times that.
   using Observable = std::function<double(double x, double y, double v)>;
-  [[nodiscard]] linalg::VecHandle values(const Observable& f) const;
+  [[nodiscard]] linalg::VecHandle values(const Observable& f, bool averaged = false) const;
   /// What sums over velocity nodes overlook of f, by VelocityDiscretisation::overlooked: the
   /// product with an occupation, or u(s+) where (lambda - L) u is this, is an error of what
   /// values(f) gives. Other nodes would see it, and no refinement need. Zero where f is a
