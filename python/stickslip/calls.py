@@ -7,14 +7,13 @@ import pathlib
 import sys
 import tempfile
 import threading
-import warnings
 from collections.abc import Callable, Iterator, Mapping, Set, Sized
 from typing import Any
 
 from . import results, sweeps
 from .needed import needed
 from .program import (DONE, NO_MEMORY, SHORT, AccuracyWarning, BadInput, OutOfMemory, ProgramError, Unsolved, execute,
-                      find_program, words_of)
+                      find_program, warn, words_of)
 from .records import Record, warn_of_gravity
 from .reference import declared, with_options
 from .results import Results
@@ -22,6 +21,7 @@ from .sweeps import Sweep
 
 # A sequence for another option is swept, unless the program declares it as a list of numbers.
 LISTS = ("quantities", "lambda", "omega", "time", "distance", "inverse_distance", "velocity", "observable", "start")
+RECORDS = "record"  # folder of forces, apart from other files, whose names they may have
 FIELDS = ("density", "trajectory", "relaxation")  # what only HDF5 holds
 numpy = needed("numpy")
 Path = str | os.PathLike[str]
@@ -103,9 +103,9 @@ def _run(ranks: int, timeout: float | None, keep: Path | None, program: Path | N
             raise kind(prefix + finished.message())
         found = found_in(json.loads(summary.read_text()), options.get("output"))
     for text in found.warnings:
-        warnings.warn(text, UserWarning, stacklevel=3)
+        warn(text.replace(os.path.join(folder, RECORDS, ""), ""))  # which the user has not seen
     if finished.status != DONE:
-        warnings.warn(shortfall(found) or finished.message(), AccuracyWarning, stacklevel=3)
+        warn(shortfall(found) or finished.message(), AccuracyWarning)
     return found
 
 
@@ -287,8 +287,8 @@ def _force_of(options: Mapping[str, Any], folder: pathlib.Path) -> pathlib.Path:
                        f"on; record.resampled({record.step:g}, across={end - begin:g}) joins them by straight lines, "
                        "record.between() takes a part without them")
     if isinstance(scale, int | float):
-        warn_of_gravity(record, scale, "force_scale", 7)
-    place = folder / "record"  # apart from other files, whose names it may have
+        warn_of_gravity(record, scale, "force_scale")
+    place = folder / RECORDS
     place.mkdir()
     path = place / f"{pathlib.PurePath(record.source.partition(':')[0]).stem[:80] or 'force'}.csv"
     record.save(path)

@@ -12,14 +12,13 @@ import sys
 import tempfile
 import threading
 import time
-import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from types import TracebackType
 from typing import Any, BinaryIO
 
 from . import program as programs
 from .calls import Path, found_in, prepared, shortfall
-from .program import DONE, AccuracyWarning, BadInput, Cancelled, Finished, OutOfMemory, ProgramError, TimedOut, Unsolved
+from .program import DONE, AccuracyWarning, BadInput, Cancelled, Finished, OutOfMemory, ProgramError, TimedOut, Unsolved, warn
 from .reference import with_options
 from .results import Results
 
@@ -266,10 +265,10 @@ def map(cases: Iterable[Mapping[str, Any]], workers: int = 2, *, failures: str =
         for text in one.warnings if isinstance(one, Results) else ():
             warned.setdefault(text, []).append(n)
     for text, (first, *more) in warned.items():
-        warnings.warn(f"case {first}{f' and {len(more)} more' * bool(more)}: {text}", UserWarning, stacklevel=2)
+        warn(f"case {first}{f' and {len(more)} more' * bool(more)}: {text}")
     short = [f"case {n}: {shortfall(one)}" for n, one in enumerate(found)
              if isinstance(one, Results) and one.summary["status"] != DONE]
     if short:
-        warnings.warn(f"{len(short)} of {len(found)} cases fell short: " + "; ".join(short[:SHOWN])
-                      + ("; ..." if len(short) > SHOWN else ""), AccuracyWarning, stacklevel=2)
+        warn(f"{len(short)} of {len(found)} cases fell short: " + "; ".join(short[:SHOWN])
+             + ("; ..." if len(short) > SHOWN else ""), AccuracyWarning)
     return found

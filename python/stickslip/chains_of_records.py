@@ -2,12 +2,12 @@
 
 import dataclasses
 import math
-import warnings
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from .chains import Chain
 from .needed import needed
+from .program import warn
 from .record_statistics import MATCH, SWING, Memory, measured, memory_of, spectrum_of, unsteady
 from .records import Record
 from .ways_of_records import Unfit, advised
@@ -155,7 +155,7 @@ def record(record: Record, levels: int | Sequence[float] | None = None, *, mu_s:
               error, _bands(chain, frequencies, power, memory), factor)
     notes = (*_misfits(fit), *unsteady(record))
     for note in notes:
-        warnings.warn(note, UserWarning, stacklevel=3)
+        warn(note)
     return dataclasses.replace(chain, fit=fit, notes=(*str(fit).splitlines(), *notes))
 
 

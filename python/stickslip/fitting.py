@@ -2,7 +2,6 @@
 
 import dataclasses
 import math
-import warnings
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -11,6 +10,7 @@ from .cases import Pool
 from .likelihood import FAR, MOVED, Axis, Search
 from .measurements import DataSet, data_sets
 from .needed import needed
+from .program import warn
 from .reference import declared, with_options
 from .results import Results, closest
 from .views import viewed
@@ -260,7 +260,7 @@ def fit(data: Mapping[str, Any] | Sequence[Mapping[str, Any]], free: Sequence[st
     estimates = {axis.name: axis.value(x) for axis, x in zip(axes, u)}
     notes = _notes(axes, inside, distance, shift, together, search.failure)
     for note in notes:
-        warnings.warn(note, UserWarning, stacklevel=3)
+        warn(note)
     names = tuple(estimates)
     return Fit(names, estimates, dict(zip(names, numpy.sqrt(covariance.diagonal()).tolist())), covariance,
                float(best.residuals @ best.residuals), None if drawn else values - len(axes), float(best.logs.sum()),

@@ -3,7 +3,6 @@
 import dataclasses
 import functools
 import math
-import warnings
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
@@ -11,6 +10,7 @@ from .chains import Chain
 from .gaussian_noise import NAMES, Gaussian, filtered, ground_swing
 from .gaussian_noise import narrow_band as narrow_band_noise
 from .needed import needed
+from .program import warn
 from .record_statistics import BLOCKS, SWING, Memory, jackknife, measured, memory_of, spectrum_of, unsteady
 from .records import Record
 from .ways_of_records import Unfit, advised
@@ -315,7 +315,7 @@ def _noise(record: Record, whole: Memory, noise: Gaussian, fit: Fitted, doubts: 
     """A noise with the mean of the record, what was fitted, and doubts, of which it warns."""
     doubts, mean = (*unsteady(record), *doubts), float(record.value.mean())
     for note in doubts:
-        warnings.warn(note, UserWarning, stacklevel=4)
+        warn(note)
     error = math.sqrt(max(noise.spectrum(0) / whole.duration, 0))
     known = abs(mean) > max(SURE * error, MEAN * noise.deviation)
     left = [f"the mean of the record, {mean:.3g} +- {error:.1g}, is left out; noise + record.value.mean() has it"]

@@ -9,10 +9,12 @@ import re
 import shutil
 import signal
 import subprocess
+import sys
 import tempfile
 import threading
 import time
 import urllib.parse
+import warnings
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, BinaryIO
 
@@ -57,6 +59,14 @@ class Cancelled(ProgramError):
 
 class AccuracyWarning(UserWarning):
     """The accuracy asked for was not reached, or a comparison disagrees; the text is the program's."""
+
+
+def warn(text: str, category: type[Warning] = UserWarning) -> None:
+    """Warn at the line of the user's that called this package, however deep within it the warning arises."""
+    level, frame = 1, sys._getframe()
+    while frame.f_back and frame.f_globals["__name__"].partition(".")[0] == __package__:
+        level, frame = level + 1, frame.f_back
+    warnings.warn(text, category, stacklevel=level)
 
 
 @dataclasses.dataclass(frozen=True)

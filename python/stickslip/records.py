@@ -4,7 +4,6 @@ import dataclasses
 import os
 import pathlib
 import re
-import warnings
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -12,6 +11,7 @@ from . import formats
 from .formats import choice
 from .formats.reading import Column
 from .needed import needed
+from .program import warn
 from .units import KINDS, in_si, is_unit, kind_of, plain_unit
 
 if TYPE_CHECKING:
@@ -167,7 +167,7 @@ class Record:
         """All values times a factor, in another unit: `record.scaled(1/9.81, "weight")`; vertical ones times its size. Warns
         where m/s^2 would be taken for g."""
         if not unit:
-            warn_of_gravity(self, factor, "scaled", 3)
+            warn_of_gravity(self, factor, "scaled")
         return self._changed(f"values were multiplied by {factor:g}", value=self.value * factor, unit=unit or self.unit,
                              vertical=None if self.vertical is None else self.vertical * abs(factor))
 
@@ -211,12 +211,12 @@ class Record:
                       comments="")
 
 
-def warn_of_gravity(record: Record, factor: float, name: str, stacklevel: int) -> None:
+def warn_of_gravity(record: Record, factor: float, name: str) -> None:
     """Warn of a factor that takes accelerations in m/s^2 for ones in g."""
     low, high = ABOUT_GRAVITY
     if record.unit == "m/s^2" and low < abs(factor) < high:
-        warnings.warn(f"{name}: the values are in m/s^2 already, and {factor:g} times them would be right for g; -1 makes "
-                      "the force on a body of the acceleration of the ground", UserWarning, stacklevel=stacklevel)
+        warn(f"{name}: the values are in m/s^2 already, and {factor:g} times them would be right for g; -1 makes the force on "
+             "a body of the acceleration of the ground")
 
 
 def read_record(path: str | os.PathLike[str], *, column: int | str | None = None, channel: str | None = None,

@@ -7,13 +7,12 @@ import json
 import math
 import os
 import pathlib
-import warnings
 from collections.abc import Callable, Iterable, Iterator, KeysView, Mapping
 from typing import TYPE_CHECKING, Any
 
 from .density import Density
 from .needed import needed
-from .program import ProgramError
+from .program import ProgramError, warn
 from .views import viewed
 
 if TYPE_CHECKING:
@@ -326,7 +325,7 @@ class Results(Mapping):
             raise ValueError(f"results of {self.name or 'a file'} have no summary; copy the file that they come from")
         path.write_text(json.dumps(self.summary, indent=1) + "\n")
         if left := ", ".join(part for part in ("density", "trajectory", "modes") if getattr(self, part)):
-            warnings.warn(f"{path}: JSON does not hold {left}; run(keep=...) leaves HDF5, which does", UserWarning, stacklevel=2)
+            warn(f"{path}: JSON does not hold {left}; run(keep=...) leaves HDF5, which does")
 
 
 def to_its_error(value: float, error: float) -> str:

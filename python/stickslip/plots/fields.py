@@ -13,7 +13,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 SLIDE, STICK, FORCING = COLOURS[0], COLOURS[1], COLOURS[4]
 needed("matplotlib.collections")
-CLEAR = 2  # least density that is shown, by the swings of its level
+CLEAR = 3  # least density that is shown, by the swings of its level and of those beside it
+BESIDE = 0.07  # of all levels, to either side
 
 
 def shade(axes: "Axes", begins: "numpy.ndarray", ends: "numpy.ndarray") -> None:
@@ -38,10 +39,12 @@ def cells_around(levels: "numpy.ndarray") -> "numpy.ndarray":
 
 
 def resolved(density: "numpy.ndarray") -> "numpy.ndarray":
-    """A density by [level, velocity], and 0 where it is not resolved: a level whose polynomials swing below 0
-    swings above it as far, which is no density but the error of the discretisation."""
-    swing = numpy.maximum(-density.min(axis=1, keepdims=True), 0)
-    return numpy.where(density > CLEAR * swing, density, 0)
+    """A density by [level, velocity], and 0 where it is not resolved: polynomials that swing below 0 on a level swing above
+    it as far there and on the levels beside it, which is no density but the error of the discretisation."""
+    reach = max(1, round(BESIDE * len(density)))
+    swing = numpy.pad(numpy.maximum(-density.min(axis=1), 0), reach)
+    swing = numpy.lib.stride_tricks.sliding_window_view(swing, 2 * reach + 1).max(axis=1)
+    return numpy.where(density > CLEAR * swing[:, None], density, 0)
 
 
 @styled
@@ -52,7 +55,7 @@ def density(items: Sequence[Results]) -> "Figure":
     tied = bool(results.density.position)
     field = results.density.by_position() if tied else results.density.by_force()
     # Polynomials along the position swing where hardly any probability is.
-    clear = field.marginal_x > -CLEAR * field.marginal_x.min()
+    clear = field.marginal_x > -2 * field.marginal_x.min()
     field = dataclasses.replace(field, **{name: numpy.where(clear, getattr(field, name).T, 0).T for name in (
         "values", "at_rest", "marginal_x")})
     x, v, ends = field.x, field.window(1e-4), cells_around(field.x)

@@ -69,6 +69,7 @@ WORDS = {"P_stick": r"probability of sticking $P_\mathrm{stick}$", "P_slide": r"
          "slip_peak": "largest speed of a slip", "path_force": "force", "path_velocity": "velocity",
          "path_displacement": "displacement"}
 FEW_POINTS = 20  # of a curve, each of which is marked, as the line between them is straight
+NEVER = 1e6  # times the friction of the other direction is no friction but a direction in which nothing moves
 LEVELS = ("delta", "delta_per_mu_s", "noise_levels")  # of the noise: distance, stated apart, and range, which is not
 
 
@@ -180,15 +181,15 @@ def number(results: Results, option: str) -> float:
 
 
 def symbol(option: str) -> str:
-    """Of an option; TeX. Its name where it has none."""
-    text = known().get(option, {}).get("symbol")
-    return f"${text}$" if text else option
+    """Of an option; TeX. Its words, or its name, where it has none."""
+    shown = known().get(option, {"label": "", "symbol": ""})
+    return f"${shown['symbol']}$" if shown["symbol"] else shown["label"] or option
 
 
 def on_axis(option: str) -> str:
     """Words and symbol of an option; TeX. Its name where it has neither."""
-    shown = known().get(option, {"label": "", "symbol": ""})
-    return f"{shown['label']} {symbol(option) if shown['symbol'] else ''}".strip() or option
+    words = known().get(option, {}).get("label", "")
+    return f"{words} {symbol(option)}" if words and words != symbol(option) else symbol(option)
 
 
 def parameters(results: Results) -> dict[str, str]:
@@ -273,15 +274,17 @@ def title(results: Results) -> str:
     """The model parameters in one line; TeX. Empty where the file does not have them."""
     if not results.options:
         return ""
-    parts = []
+    parts, one_way = [], number(results, "mu_s_minus") > NEVER * number(results, "mu_s")
     for name, text in parameters(results).items():
+        if one_way and name in ("mu_s_minus", "mu_d_minus"):
+            continue
         if name == "noise":
             parts.append(noise(results))
         elif name == "drag":
             parts.append(f"$b(v) = {drag(results)}$")
         elif not users(results, name) & {"noise", "drag"} and not known().get(name, {}).get("meanings"):
             parts.append(stated(name, text))
-    return ", ".join(filter(None, parts))
+    return ", ".join(filter(None, [*parts, "one way" * one_way]))
 
 
 def fraction(x: float) -> str:
