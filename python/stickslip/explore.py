@@ -22,6 +22,12 @@ from .sweeps import Sweep
 
 TITLE = "stickslip explorer"
 ADDRESS = "127.0.0.1"  # of the page: this machine alone
+OWN_PAGE = f"""
+addEventListener("DOMContentLoaded", () => {{
+  document.title = "{TITLE}";
+  document.head.insertAdjacentHTML("beforeend", "<style>.mpl-toolbar, .ui-dialog-titlebar {{display: none !important}}</style>");
+}});
+"""
 POLL = 20  # milliseconds between looks for new results
 PATIENCE = 0.5  # seconds for which pictures of other parameters than those of the sliders are not greyed
 LONGEST = 100  # characters of the line at the bottom, which are clear of the buttons
@@ -29,6 +35,8 @@ REFUSED = "#b00000"
 OUT_OF_USE = "#aaaaaa"
 KNOBS_BELOW = 6  # one another
 FIGURE = (13, 8)  # inches
+PAGE, WINDOW = 80, 100  # points an inch: a page of 640 pixels, as a screen of 800 has bars; at most, of a window
+BARS = 140  # pixels of a screen beside the figure of a window
 REGIONS = {**PLACES, "knobs": (0.33, 0.05, 1, PLACES["distribution"][1]), "status": (0, 0, 0.59, 0.05)}
 
 
@@ -355,9 +363,16 @@ def use_backend(browser: bool, port: int) -> None:
     matplotlib.rcParams |= {"webagg.address": ADDRESS, "webagg.port": port, "webagg.open_in_browser": browser}
     matplotlib.use("WebAgg")
     manager = needed("matplotlib.backends.backend_webagg_core").FigureManagerWebAgg
-    script = manager.get_javascript()  # the pages of Matplotlib have its own title
-    title = f'\naddEventListener("DOMContentLoaded", () => {{ document.title = "{TITLE}"; }});\n'
-    manager.get_javascript = classmethod(lambda cls, stream=None: script + title)
+    script = manager.get_javascript()  # the pages of Matplotlib have its own title, and bars with no use here
+    manager.get_javascript = classmethod(lambda cls, stream=None: script + OWN_PAGE)
+
+
+def fit_screen(figure: Any) -> None:
+    """Make the figure of a window as large as the screen allows; a page stays as it is."""
+    screen = getattr(getattr(figure.canvas.manager, "window", None), "winfo_screenheight", None)
+    if screen:
+        figure.set_dpi(max(PAGE, min(WINDOW, (screen() - BARS) // FIGURE[1])))
+        figure.set_size_inches(FIGURE, forward=True)
 
 
 def explore(file: pathlib.Path | None, accuracy: float = 1e-4, browser: bool = False, port: int = 8988,
@@ -392,7 +407,8 @@ def explore(file: pathlib.Path | None, accuracy: float = 1e-4, browser: bool = F
         scene = {**found.options, **found.scene}
     use_backend(browser, port)
     pyplot = needed("matplotlib.pyplot")
-    figure = pyplot.figure(TITLE, figsize=FIGURE, dpi=80 if browser else None)  # a page of 640 pixels, and its bars
+    figure = pyplot.figure(TITLE, figsize=FIGURE, dpi=PAGE)
+    fit_screen(figure)
     worker = Worker()  # which starts the program once
     explorer = Explorer(figure, options, scene, compute=worker.run)
     timer = figure.canvas.new_timer(POLL)

@@ -48,7 +48,7 @@ class LivePictures:
         self.by_x = figure.add_subplot(grid[1, 0], sharex=self.density)
         self.image = self.density.imshow(numpy.ones((2, 2)), aspect="auto", origin="lower", cmap="Blues",
                                          norm=colors.LogNorm(DEPTH, 1), interpolation="nearest")
-        self.scale = figure.colorbar(self.image, cax=figure.add_subplot(grid[0, 2]), label="share of the largest density")
+        self.scale = figure.colorbar(self.image, cax=figure.add_subplot(grid[0, 2]), label="density of sliding")
         self.scale.minorticks_off()  # each takes its time to draw
         self.scale.ax.yaxis.label.set_size(9)  # all of it fits beside the scale
         self.at_rest = self.density.scatter([], [], color=STICK, zorder=3)
@@ -115,7 +115,7 @@ class LivePictures:
         picture = (resolved(density.at(v)) / steps[:, None])[numpy.clip(columns, 0, len(x) - 1)].T
         largest = picture.max()
         self.image.set_data(numpy.maximum(picture / largest, DEPTH))  # a scale that changes takes its time to draw
-        self.scale.ax.yaxis.label.set_text(f"share of the largest density, {largest:.3g}/(force velocity)")
+        self.scale.ax.yaxis.label.set_text(f"density of sliding; 1 is {largest:.3g}/(force velocity)")
         self.image.set_extent((low, high, v[0], v[-1]))
         held = density.at_rest > 0
         self.at_rest.set_offsets(numpy.column_stack([x[held], numpy.zeros(held.sum())]))

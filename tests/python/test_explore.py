@@ -7,6 +7,7 @@ import sys
 import tempfile
 import threading
 import time
+import types
 import unittest
 import unittest.mock
 
@@ -193,6 +194,21 @@ class Pictures(Case):
         wanted.set()
         self.settled(made)
         self.assertEqual(greyed(), [False, False, False])
+
+    def test_a_window_fits_the_screen_and_a_page_one_of_800_pixels(self):
+        self.assertLessEqual(explore.FIGURE[1] * explore.PAGE, 800 - explore.BARS)
+        figure = plt.figure(figsize=explore.FIGURE, dpi=explore.PAGE)
+        self.addCleanup(plt.close, figure)
+        explore.fit_screen(figure)  # without a window
+        self.assertEqual(figure.dpi, explore.PAGE)
+        for height, dots in ((768, 80), (900, 95), (1080, 100), (2160, 100)):
+            sizes = []
+            window = types.SimpleNamespace(winfo_screenheight=lambda height=height: height)
+            figure.canvas.manager = types.SimpleNamespace(window=window, resize=lambda *size, kept=sizes: kept.append(size))
+            explore.fit_screen(figure)
+            self.assertEqual(figure.dpi, dots)
+            self.assertEqual(sizes[-1], (explore.FIGURE[0] * dots, explore.FIGURE[1] * dots))
+        figure.canvas.manager = None
 
     def test_quantiles_invert_the_distribution_function(self):
         t = numpy.geomspace(0.02, 20, 60)
