@@ -16,7 +16,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "python"))
 import stickslip
 from sliding import MU_D, MU_S, sliding_operator
-from stickslip.plots.fields import FORCING, SLIDE, STICK
+from stickslip.plots.fields import FORCING, SLIDE, STICK, shade
 from stickslip.plots.style import ABSCISSAE, COLOURS, MARKERS, STYLES, Figure, numpy, saved, styled
 
 warnings.simplefilter("ignore", stickslip.AccuracyWarning)  # a discretisation fixed by hand is not refined
@@ -67,6 +67,37 @@ def phase_strip(axes, borders, start, end):
     axes.text((start + end) / 2, 1.35, "one excursion", ha="center", va="bottom")
     axes.set(ylim=(-0.5, 2.4))
     axes.axis("off")
+
+
+@styled
+def stick_slip(run):
+    """A path of force and velocity beside the stationary distribution of both."""
+    path = run(delta=1 / 8, quantities="trajectory", start="0,0", horizon=40, seed=4).trajectory
+    found = run(delta=1 / 8, quantities="density", accuracy=1e-8).density
+    figure = Figure(figsize=(WIDTH, 3.6))
+    (by_x, of_x), (by_v, of_v) = figure.subplots(2, 2, sharex="col", sharey="row", gridspec_kw={"width_ratios": (2.7, 1)})
+    by_x.axhspan(-MU_S, MU_S, color="#dddddd", alpha=0.55, linewidth=0, zorder=0)
+    by_x.step(path["time"], path["x"], where="post", color=FORCING, linewidth=0.8)
+    by_v.plot(path["time"], path["v"], color=SLIDE, linewidth=1.4)
+    steps = numpy.diff(numpy.concatenate([[0], path["y"][:-1] == 0, [0]]))
+    for axes in (by_x, by_v):
+        shade(axes, path["time"][numpy.flatnonzero(steps > 0)], path["time"][numpy.flatnonzero(steps < 0)])
+    by_x.margins(x=0)
+    v, delta = found.window(1e-4), found.x[1] - found.x[0]
+    of_x.barh(found.x, found.marginal_x / delta, delta, color=SLIDE, label="sliding")
+    of_x.barh(found.x, found.at_rest / delta, delta, color=STICK, label="at rest")
+    of_v.plot(found.marginal(v), v, color=SLIDE)
+    of_v.axhline(0, color=STICK, linewidth=1.4, zorder=1)
+    of_v.text(0.96, 0.96, f"at rest:\n{found.mass_at_rest:.9f}", color=STICK, ha="right", va="top", fontsize=8,
+              transform=of_v.transAxes)
+    of_x.legend(fontsize=7, loc="upper right", handlelength=1)
+    by_x.set(ylabel="force $X$\n[force]", yticks=(-2, -1, 0, 1, 2), yticklabels=("$-2$", r"$-\mu_s$", "0", r"$\mu_s$", "2"),
+             ylim=(-3.6, 3.6), title="a path, at rest where it is orange")
+    by_v.set(ylabel="velocity $V$\n[velocity]", xlabel="time $t$  [time]", ylim=(-2.4, 2.4))
+    of_x.set(title="the distribution")
+    of_v.set(xlabel="probability density", xlim=(0, None))
+    figure.align_ylabels((by_x, by_v))
+    return figure
 
 
 @styled
@@ -226,7 +257,7 @@ def reduced_model(run):
     return figure
 
 
-FIGURES = {draw.__name__: draw for draw in (phases, balance, mesh, sparsity, convergence, reduced_model)}
+FIGURES = {draw.__name__: draw for draw in (phases, stick_slip, balance, mesh, sparsity, convergence, reduced_model)}
 
 
 def main():

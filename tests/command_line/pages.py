@@ -26,7 +26,7 @@ BINARIES = pathlib.Path(os.environ.get("STICKSLIP_BINARIES", SOURCES / "build"))
 PAGES = ("README.md", "docs/tutorial.md", "docs/gallery.md", "docs/output.md", "docs/named_noises.md",
          "docs/displacement_distribution.md", "docs/given_force.md", "docs/recorded_forces.md",
          "docs/slips.md", "docs/spring.md", "docs/starting_points.md", "docs/white_noise.md", "docs/fitting.md",
-         "docs/record_to_decision.md")
+         "docs/record_to_decision.md", "docs/compared.md", "docs/fragility.md")
 MARK = re.compile(r"<!-- not run: \S.* -->")
 FENCE = re.compile(r"(```+)\s*(.*)")
 PICTURE = re.compile(r"!\[[^\]]*\]\(([^)#:]+\.png)\)")

@@ -200,8 +200,7 @@ def fragility(items: Sequence[Results]) -> "Figure":
             inside, label = (p > bar) & (p < 1 - bar), f"$P(|x({key[17:-1]})| > {d[high]:g})$"
             if inside.sum() > 1:
                 z = numpy.array([normal.inv_cdf(one) for one in p[inside]])
-                weights = numpy.exp(-z**2 / 2) / (bar[inside] + 1e-6)
-                slope, begin = numpy.polyfit(numpy.log(strength[inside]), z, 1, w=weights)
+                slope, begin = numpy.polyfit(numpy.log(strength[inside]), z, 1, w=numpy.exp(-z**2 / 2))  # nearest in p
                 axes.plot(fine, [normal.cdf(begin + slope * x) for x in numpy.log(fine)], color=COLOURS[n % 5], zorder=1)
                 label += f": median {numpy.exp(-begin / slope):.3g}, deviation of the logarithm {1 / slope:.2g}"
             axes.errorbar(strength, p, bar, fmt=MARKERS[n % 5], color=COLOURS[n % 5], markersize=4, capsize=2, label=label)
