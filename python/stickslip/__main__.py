@@ -142,29 +142,13 @@ def _record_of(arguments: argparse.Namespace) -> "Record":
     return (record if arguments.scale == 1 else record.scaled(arguments.scale)).rested(arguments.rest)
 
 
-def explore_command() -> int:
-    """The console script stickslip-explore."""
-    return main(["explore", *sys.argv[1:]])
+def _script(command: str) -> Callable[[], int]:
+    """What the console script stickslip-COMMAND calls."""
+    return lambda: main([command, *sys.argv[1:]])
 
 
-def levels_command() -> int:
-    """The console script stickslip-levels."""
-    return main(["levels", *sys.argv[1:]])
-
-
-def force_command() -> int:
-    """The console script stickslip-force."""
-    return main(["force", *sys.argv[1:]])
-
-
-def newmark_command() -> int:
-    """The console script stickslip-newmark."""
-    return main(["newmark", *sys.argv[1:]])
-
-
-def plot_command() -> int:
-    """The console script stickslip-plot."""
-    return main(["plot", *sys.argv[1:]])
+explore_command, levels_command, force_command, newmark_command, plot_command = map(
+    _script, ("explore", "levels", "force", "newmark", "plot"))
 
 
 def explore_scene(arguments: argparse.Namespace) -> int:

@@ -29,8 +29,29 @@ class Meant:
     label: str = "meant"
 
 
+class Noise:
+    """What chains and Gaussian noise share."""
+
+    @property
+    def correlation_time(self) -> float:
+        """Integral of the autocorrelation over t > 0 [time]: S(0)/(2 Var X)."""
+        return float(self.spectrum(0) / (2 * self.deviation**2))
+
+    def plot(self, ax: Any = None) -> "Figure":
+        """Draw autocovariance and spectrum, beside those that the noise stands for; returns the figure.
+
+        `ax` are two axes of matplotlib to draw in."""
+        return viewed("picture", self, ax)
+
+    def _write(self, path: str | os.PathLike[str], head: str, rows: Any) -> None:
+        """Write rows of numbers below what the noise says of itself and the names of the columns, in full digits."""
+        said = [f"# {line}" for line in repr(self).splitlines()]
+        lines = [",".join(repr(value.item()) for value in row) for row in rows]
+        pathlib.Path(path).write_text("\n".join([*said, head, *lines, ""]))
+
+
 @dataclasses.dataclass(frozen=True, eq=False)
-class Chain:
+class Chain(Noise):
     """A Markov chain with a force in each state.
 
     `a + b` is the sum of independent chains (states are pairs, that of b runs first), `c * a` scales the force, `a + 0.3`
@@ -141,11 +162,6 @@ class Chain:
         """Standard deviation of X [force]."""
         return math.sqrt(self.stationary @ (self.x - self.mean) ** 2)
 
-    @property
-    def correlation_time(self) -> float:
-        """Integral of the autocorrelation over t > 0 [time]: S(0)/(2 Var X)."""
-        return float(self.spectrum(0) / (2 * self.deviation**2))
-
     def covariance(self, t: "Array | float") -> "Array":
         """Cov(X_0, X_t) = sum_n p_n f_n (exp(Q t) f)_n with f = x - E[X], at times t >= 0 [force^2], of the shape of t."""
         t = numpy.asarray(t, float)
@@ -196,23 +212,10 @@ class Chain:
         """
         if rates is None and not self.neighbours_only:
             raise ValueError(f"rates: {self.name} has jumps beyond its neighbours; name two files, states and rates")
-        said = "".join(f"# {line}\n" for line in repr(self).splitlines())
         if rates is None:
             up, down = (numpy.append(0, self.rates.diagonal(1)), numpy.append(self.rates.diagonal(-1), 0))
             rows = zip(self.x, numpy.append(up[1:], 0), numpy.append(0, down[:-1]))
-            return write_table(states, said, "x,rate_up,rate_down", rows)
+            return self._write(states, "x,rate_up,rate_down", rows)
         entries = self.rates.tocoo()
-        write_table(states, said, "x", zip(self.x))
-        write_table(rates, said, "from,to,rate", zip(entries.row, entries.col, entries.data))
-
-    def plot(self, ax: Any = None) -> "Figure":
-        """Draw autocovariance and spectrum of the chain, beside those that it stands for; returns the figure.
-
-        `ax` are two axes of matplotlib to draw in."""
-        return viewed("picture", self, ax)
-
-
-def write_table(path: str | os.PathLike[str], said: str, head: str, rows: Any) -> None:
-    """Write rows of numbers below comments and the names of the columns, in full digits."""
-    lines = [",".join(repr(value.item()) for value in row) for row in rows]
-    pathlib.Path(path).write_text("\n".join([said + head, *lines, ""]))
+        self._write(states, "x", zip(self.x))
+        self._write(rates, "from,to,rate", zip(entries.row, entries.col, entries.data))

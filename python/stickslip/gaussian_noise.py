@@ -8,14 +8,12 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from . import chains_by_name
-from .chains import Chain, Meant, write_table
+from .chains import Chain, Meant, Noise
 from .chains_by_name import RADIUS, plane_lattice, positive
 from .needed import needed
-from .views import viewed
 
 if TYPE_CHECKING:
     import numpy
-    from matplotlib.figure import Figure
     Array = numpy.ndarray
 numpy = needed("numpy")
 
@@ -23,7 +21,7 @@ NAMES = ("amplitude", "decay", "frequency", "sine")
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
-class Gaussian:
+class Gaussian(Noise):
     """Stationary Gaussian noise with the covariance sum of amplitude exp(-decay t) (cos(frequency t) + sine sin(frequency t)).
 
     `a + b` is the sum of independent noises, `c * a` scales the force, `a + 0.3` shifts it.
@@ -106,11 +104,6 @@ class Gaussian:
         return math.sqrt(self.terms[:, 0].sum())
 
     @property
-    def correlation_time(self) -> float:
-        """Integral of the autocorrelation over t > 0 [time]: S(0)/(2 Var X)."""
-        return float(self.spectrum(0) / (2 * self.deviation**2))
-
-    @property
     def fastest(self) -> float:
         """The largest rate at which the covariance changes [1/time]."""
         return float(numpy.hypot(self.terms[:, 1], self.terms[:, 2]).max())
@@ -154,13 +147,7 @@ class Gaussian:
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the file of `-covariance_file`."""
-        write_table(path, "".join(f"# {line}\n" for line in repr(self).splitlines()), ",".join(NAMES), self.terms)
-
-    def plot(self, ax: Any = None) -> "Figure":
-        """Draw autocovariance and spectrum, beside those of a record that was fitted; returns the figure.
-
-        `ax` are two axes of matplotlib to draw in."""
-        return viewed("picture", self, ax)
+        self._write(path, ",".join(NAMES), self.terms)
 
 
 def gaussian(terms: Sequence[Sequence[float]], mean: float = 0) -> Gaussian:

@@ -2,18 +2,16 @@
 
 from typing import Any
 
-from ..chains import Chain
-from ..gaussian_noise import Gaussian
+from ..chains import Chain, Noise
 from ..views import view
 from .style import ABSCISSAE, COLOURS, Figure, numpy, styled, units
 
 SMALL = 0.02  # of the variance, which the covariance has fallen to where the picture ends
 
 
-@view("picture", Gaussian)
-@view("picture", Chain)
+@view("picture", Noise)
 @styled
-def draw(chain: Chain | Gaussian, axes: Any = None) -> Figure:
+def draw(chain: Noise, axes: Any = None) -> Figure:
     """Draws in two axes, by default of a new figure; returns the figure."""
     of_time, of_frequency = Figure(figsize=(8, 3.2)).subplots(1, 2) if axes is None else axes
     longest = 1 / chain.fastest

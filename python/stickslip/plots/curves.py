@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from ..results import Result, Results
 from .distributions import is_part
 from .style import (ABSCISSAE, COLOURS, MARKERS, STYLES, Figure, Line2D, curve, decades, drag, fraction, memory,
-                    number, numpy, over, scale, step, styled, title, units, words)
+                    number, numpy, over, paneled, scale, step, styled, title, units, words)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -152,11 +152,9 @@ def _against(item: Results, key: str) -> Result:
 
 
 def _panels(items: Sequence[Results], panels: Sequence[Panel]) -> "Figure":
-    columns = min(len(panels), 2 if len(panels) in (2, 4) else 3)
-    rows = -(-len(panels) // columns)
-    figure = Figure(figsize=(0.6 + 3.4 * max(columns, 1.4), 0.4 + 2.8 * rows))
-    for n, panel in enumerate(panels):
-        _panel(figure.add_subplot(rows, columns, n + 1), panel, items)
+    figure, places = paneled(len(panels))
+    for axes, panel in zip(places, panels):
+        _panel(axes, panel, items)
     if len(titles := set(map(title, items))) == 1:
         figure.suptitle(*titles, fontsize=10)
     return figure

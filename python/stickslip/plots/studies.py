@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from ..results import Results
-from .style import (ABSCISSAE, COLOURS, MARKERS, STYLES, Figure, Line2D, Patch, matplotlib, numpy, styled, title,
+from .style import (ABSCISSAE, COLOURS, MARKERS, STYLES, Figure, Line2D, Patch, matplotlib, numpy, paneled, styled, title,
                     units, without, words)
 
 if TYPE_CHECKING:
@@ -144,11 +144,8 @@ def convergence(items: Sequence[Results]) -> "Figure":
     for name, table in results.study.items():
         kind = next((kind for kind in PLACES if name.endswith(f" {kind}")), "")
         panels.setdefault(name.removesuffix(f" {kind}"), {})[kind] = table
-    columns = min(len(panels), 3)
-    rows = -(-len(panels) // columns)
-    figure = Figure(figsize=(0.6 + 3.4 * columns, 0.4 + 2.8 * rows))
-    for place, (key, tables) in enumerate(panels.items(), 1):
-        axes = figure.add_subplot(rows, columns, place)
+    figure, places = paneled(len(panels))
+    for axes, (key, tables) in zip(places, panels.items()):
         for n, (kind, table) in enumerate(tables.items()):
             look = {"color": COLOURS[n], "marker": MARKERS[n], "markersize": 4}
             axes.plot(table[over], table["value"], label=kind or None, **look)

@@ -99,6 +99,14 @@ def saved(figure: "Figure", place: pathlib.Path | None) -> pathlib.Path | None:
     return place
 
 
+def paneled(count: int) -> "tuple[Figure, list[Axes]]":
+    """A figure of so many panels, at most three beside each other."""
+    columns = min(count, 2 if count in (2, 4) else 3)
+    rows = -(-count // columns)
+    figure = Figure(figsize=(0.6 + 3.4 * max(columns, 1.4), 0.4 + 2.8 * rows))
+    return figure, [figure.add_subplot(rows, columns, n + 1) for n in range(count)]
+
+
 def curve(axes: "Axes", result: Result, n: int = 0, *, colour: str | None = None, style: Any = None,
           label: str | None = None) -> None:
     """An array against its abscissa: computed values as a line in the band of their errors, simulated ones as marks
