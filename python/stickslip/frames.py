@@ -1,6 +1,6 @@
 """Results as tables of pandas and data sets of xarray."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from .needed import needed
@@ -17,10 +17,15 @@ numpy = needed("numpy")
 
 def _unit(results: Results, name: str) -> str:
     """Of an option or an abscissa: as the file has it, or as the program says; empty where neither does."""
+    return getattr(results, "units", {}).get(name) or _known(name).get("unit", "")
+
+
+def _known(name: str) -> Mapping[str, Any]:
+    """What the program declares of an option; nothing where there is none to ask, or none of that name."""
     try:
-        return getattr(results, "units", {}).get(name) or declared().get(name, {}).get("unit", "")
+        return declared().get(name, {})
     except ProgramError:
-        return ""
+        return {}
 
 
 def _columns(results: Results, result: Result) -> dict[str, Any]:
@@ -75,4 +80,5 @@ def to_xarray(results: Results) -> "xarray.Dataset":
         if one.ci95 is not None:
             ends = numpy.asarray(one.ci95, float)
             variables |= {f"{key}_{end}": (dims, ends[..., n], attributes) for n, end in enumerate(("low", "high"))}
-    return needed("xarray").Dataset(variables, coords, {name: text for name, text in results.options.items() if text})
+    return needed("xarray").Dataset(variables, coords, {
+        name: text for name, text in results.options.items() if text and _known(name).get("group") != "Output"})

@@ -719,6 +719,7 @@ class Pictures(Case):
         self.assertEqual((data.slip_begin.dims, data.slip_peak.dims), (("mu_s", "slip"),) * 2)
         numpy.testing.assert_array_equal(data.slip_begin.notnull().sum("slip"), counts)
         self.assertNotIn("", data.attrs.values())
+        self.assertEqual((data.attrs["quantities"], "summary" in data.attrs), ("given_force", False))  # a file of this run
         axes = s.plot(kind="slip_peak")["slip_peak"].axes[0]
         self.assertEqual({line.get_linestyle() for line in axes.lines}, {"None"})
         self.assertEqual(axes.get_xlabel(), "number of the slip")
