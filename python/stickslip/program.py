@@ -64,7 +64,7 @@ class AccuracyWarning(UserWarning):
 def warn(text: str, category: type[Warning] = UserWarning) -> None:
     """Warn at the line of the user's that called this package, however deep within it the warning arises."""
     level, frame = 1, sys._getframe()
-    while frame.f_back and frame.f_globals["__name__"].partition(".")[0] == __package__:
+    while frame.f_back and frame.f_globals.get("__name__", "").partition(".")[0] == __package__:
         level, frame = level + 1, frame.f_back
     warnings.warn(text, category, stacklevel=level)
 

@@ -25,6 +25,8 @@ class Warnings(Case):
         with self.assertWarnsRegex(UserWarning, TEXT) as place:
             stickslip.run(**WARNED)
         self.assertEqual(pathlib.Path(place.filename), pathlib.Path(__file__))
+        with self.assertWarnsRegex(UserWarning, TEXT):
+            eval("run(**options)", {"run": stickslip.run, "options": WARNED})  # where globals have no name
         r, texts = caught(lambda: stickslip.run(**WARNED, seed=3, keep=self.folder / "r.h5"))
         self.assertEqual([f"stickslip: {text}" for text in texts], printed.splitlines())
         self.assertEqual(len(texts), 2)
