@@ -117,13 +117,10 @@ class Rules {
     if (r_.scene.projector() == nullptr || !settings_.sound()) return;
     const std::string option =
         r_.scene.spring ? "-spring_stiffness" : "-noise " + r_.scene.noise.name;
-    const auto& noises = effects::noises();
     std::string way = "take a chain, which lattice(delta) of such a noise makes in Python";
     if (r_.scene.spring) {
       way = "leave -spring_stiffness out";
-    } else if (std::ranges::all_of(noises.parts(r_.scene.noise.name), [&](const auto& word) {
-                 return noises.of(word).knows("delta");
-               })) {
+    } else if (effects::noises().all_know(r_.scene, "delta")) {
       way = fmt::format("give -delta, such as {:.3g}, for levels", r_.scene.delta);
     }
     const std::string why = "needs a noise of levels alone, which " + option + " has not";

@@ -62,6 +62,12 @@ bool Choice::knows(const model::Scene& scene, std::string_view name) const {
                      [&](const std::string& word) { return of(word).knows(name); });
 }
 
+bool Choice::all_know(const model::Scene& scene, std::string_view name) const {
+  const auto words = parts(word_in(scene));
+  return std::all_of(words.begin(), words.end(),
+                     [&](const std::string& word) { return of(word).knows(name); });
+}
+
 const Choice& frictions() {
   static const Choice choice{
       "friction", "friction law", kFrictions,
