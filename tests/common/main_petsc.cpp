@@ -1,13 +1,12 @@
 /// Starts PETSc around Catch2: the same cases run on every rank, only rank 0 reports unless another
 /// rank fails.
 
-#define CATCH_CONFIG_RUNNER  // of Catch2 2
 #include <mpi.h>
 
 #include <iostream>
 #include <sstream>
 
-#include "catch.hpp"
+#include "run_catch.hpp"
 #include "stickslip/generator/solver_policy.hpp"
 #include "stickslip/linalg/session.hpp"
 
@@ -21,7 +20,7 @@ int main(int argc, char** argv) {
   std::ostringstream quiet;
   std::streambuf* const terminal = std::cout.rdbuf();
   if (rank != 0) std::cout.rdbuf(quiet.rdbuf());
-  const int failures = Catch::Session().run(argc, argv);
+  const int failures = stickslip::test::run_catch(argc, argv);
   std::cout.rdbuf(terminal);
   if (rank != 0 && failures != 0) std::cout << "[rank " << rank << "]\n" << quiet.str();
 

@@ -1,4 +1,3 @@
-#define CATCH_CONFIG_RUNNER  // of Catch2 2
-#include "catch.hpp"
+#include "run_catch.hpp"
 
-int main(int argc, char** argv) { return Catch::Session().run(argc, argv); }
+int main(int argc, char** argv) { return stickslip::test::run_catch(argc, argv); }
