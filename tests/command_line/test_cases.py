@@ -18,6 +18,7 @@ SIX = "-mu_s 1.3 -mu_d 0.026 -drag expression -drag_expression -1.5*tanh(v)-0.1*
 CUBIC = "-mu_s 0.7 -mu_d 0.4 -tau 4 -delta 0.25 -drag cubic -drag_coefficient 2 -drag_cubic 1 -quantities spectrum "
 NEVER_STICKS = "-noise telegraph -telegraph_amplitude 2 -telegraph_rate 1 "
 
+PUSHED = "-noise telegraph -telegraph_amplitude 1 -telegraph_rate 1 -bias 0.3 -mu_d 0.5 "
 ALWAYS_MOVES = "-noise telegraph -telegraph_amplitude 0.5 -telegraph_rate 1 -mu_s 1 -mu_d 1 -bias 2 "
 # Off, where the force equals friction exactly, and on.
 GENE = f"-noise chain -noise_states {DATA}/gene_states.csv -noise_rates {DATA}/gene_rates.csv -mu_s 0.1 -mu_d 0.1 "
@@ -75,6 +76,30 @@ RIGHT = [
     (CUBIC + "-omega 50,10", "S_v", 1.031693678618e-8, 1e-9, "complex solves at degree 19"),
     ("-mu_s 1 -mu_d 0.5 -delta 0.25 -quantities spectrum -omega 1e3,1", "S_v", 1.882297346e-12, 1e-7,
      "the same at -accuracy 1e-8, waves on two levels alike"),
+    # By other discretisations, which agree to 12 digits; the last by exact rational arithmetic of the static chain.
+    *((f"-mu_d {mu_d} -delta {delta} -accuracy 1e-10 -quantities sticking,moments", key, value, 2e-9, "another program")
+      for mu_d, delta, values in (
+          (0.25, 0.5, {"P_stick": 0.289297540641, "E_V2": 0.288358457137, "mean_excursion": 4.7812073925}),
+          (0.25, 0.125, {"P_stick": 0.156486168586, "E_V2": 0.306452606532, "mean_excursion": 3.7767781834}),
+          (0.25, 0.03125, {"P_stick": 0.1291435895, "E_V2": 0.3090088885, "mean_excursion": 3.57029236}),
+          (1, 0.125, {"P_stick": 0.52607882989, "E_V2": 0.04951670286}))
+      for key, value in values.items()),
+    *(("-mu_s 6 -mu_d 0.25 -delta 0.25 -accuracy 1e-10 -quantities sticking", key, value, 2e-9, "static chain")
+      for key, value in (("P_slide", 8.13129791773e-9), ("mean_slide", 4.96357308), ("mean_stick", 6.1042813677e8))),
+    ("-mu_d 0.25 -delta 0.25 -drag none -accuracy 1e-10", "E_V2", 29.5037230587, 2e-9, "fluid queue"),
+    ("-delta 0.25 -drag none -accuracy 1e-10 -quantities entry_law", "f_stick_0", 0.308665061, 2e-9, "fluid queue"),
+    *((f"-mu_d 0.5 -delta 0.25 -friction stribeck -stribeck_velocity {v} -accuracy 1e-9 -quantities sticking,moments",
+       key, value, 2e-10, "elements of degree 24 in other code") for v, values in (
+           (0.1, (0.42027641456, 1.19379291929, 0.15566674581, 0.22351933315)),
+           (0.02, (0.34589070474, 1.65983452192, 0.17162127108, 0.25442017700)))
+      for key, value in zip(("P_stick", "mean_slide", "E_V2", "E_absV"), values)),
+    *((f"-mu_d 0.5 -delta 0.25 -accuracy 1e-8 -quantities averages -observable {f}", f"pi({f})", value, 1e-11, "other elements")
+      for f, value in (("abs(v)>0.5", 0.198608934333), ("min(abs(v),0.5)", 0.202385358765))),
+    # P_stick = (mu_d - g)/(mu_d + a - g) whatever the rate; with linear drag E[V] is mean force less friction.
+    (PUSHED + "-drag none", "P_stick", 1 / 6, 1e-11, "closed form"),
+    (PUSHED + "-drag none", "mean_slide", 5, 1e-11, "closed form"),
+    (PUSHED + "-drag none -route fluid_queue", "mean_slide", 5, 1e-11, "closed form"),
+    *((PUSHED + f"-accuracy 1e-8 -route {route}", "E_V", 0.25, 1e-7, "closed form") for route in ("lambda", "null_vector")),
 ]
 
 # Command line, exit status, what is said.
@@ -92,9 +117,12 @@ SAID = [
 
 class Cases(running.Case):
     def test_values(self):
+        results = {}  # of each line once
         for line, key, value, precision, source in RIGHT:
-            with self.subTest(line=line, source=source):
-                found = self.summary(*line.split())["results"][key]
+            with self.subTest(line=line, key=key, source=source):
+                if line not in results:
+                    results[line] = self.summary(*line.split())["results"]
+                found = results[line][key]
                 at, error = (x[0] if isinstance(x, list) else x for x in (found["value"], found["error"]))
                 self.assertLessEqual(abs(at - value), error + precision * abs(value), f"{at} instead of {value}")
 

@@ -29,17 +29,6 @@ class Refusals(Case):
         for part in message:
             self.assertIn(part, done.stderr)
 
-    def test_values_out_of_range(self):
-        self.refuse("-delta", "-0.5", message=("-delta = -0.5", "[0, inf)"))
-        self.refuse("-mu_d", "2", message=("-mu_d = 2", "[0, mu_s]"))
-        self.refuse("-tau", "nan", message=("-tau = nan",))
-        self.refuse("-drag_coefficient", "-1", message=("must not grow",))
-        self.refuse("-delta", "0.25", "-noise_levels", "99", message=("at most 32",))
-        self.refuse("-delta", "0.25", "-mu_s", "8", message=("never slides",))
-        resolvent = ("-quantities", "resolvent", "-lambda", "1", "-observable")
-        self.refuse(*resolvent, "", message=("must name a function of the state",))
-        self.refuse(*resolvent, "v^2; v; v^2", message=("names v^2 twice", "name it once"))
-
     def test_names(self):
         self.refuse("-detla", "0.5", message=("did you mean -delta?",))
         self.refuse("-mu_s=3", message=("-mu_s=3", "unknown option", "write -mu_s 3"))
@@ -87,24 +76,13 @@ class Refusals(Case):
                                      ("rint(40*v)", "65 or more")):
                 self.refuse(*asks, observable, "-quantities", quantity,
                             message=(f"-observable = {observable}", message, "-scheme upwind"))
-        for fine in ("tanh(50*v)", "x>0.5", "v>0", "(x>0.5)*abs(v)", "v>50", "x==1.25 && v<-3"):
-            self.run_ok(*asks, fine, "-quantities", "resolvent", "-accuracy", "1e-3")
-        right = (("abs(v)>0.5", 0.198608934333), ("min(abs(v),0.5)", 0.202385358765))
-        for observable, value in right:
-            pi = self.summary(*asks, observable, "-quantities", "resolvent",
-                              "-accuracy", "1e-8")["results"][f"pi({observable})"]
-            self.assertLess(abs(pi["value"][0] - value), max(1e-11, pi["error"][0]))
-        upwind = self.summary(*asks, "abs(v)>0.5", "-quantities", "resolvent", "-scheme", "upwind",
-                              "-p", "16", status=3)["results"]["pi(abs(v)>0.5)"]
-        self.assertLess(abs(upwind["value"][0] - 0.198608934333), upwind["error"][0])
+        self.run_ok(*asks, "x==1.25 && v<-3", "-quantities", "resolvent", "-accuracy", "1e-3")
 
     def test_references_of_unknown_results(self):
         header = "quantity,argument,value,low,high\n"
         file = self.folder / "a.csv"
-        for key, message in (("P_stik", "did you mean P_stick?"), ("zzzzzz", "-help"),
-                          ("q(v^2)", "q(v^2)"), ("dP_stik_dtau", "dP_stik_dtau"), ("d_dtau", "d_dtau")):
-            file.write_text(header + f"P_slide,,0.8,0,1\n{key},,0.2,0,1\n")
-            self.refuse(*SMALL, "-compare", file, message=(f"holds {key}, which is no key of a result", message))
+        file.write_text(header + "P_slide,,0.8,0,1\nP_stik,,0.2,0,1\n")
+        self.refuse(*SMALL, "-compare", file, message=("holds P_stik, which is no key", "did you mean P_stick?"))
         file.write_text(header + "P_stick,,0.2,0,1\nvar_slide,,0.2,0,1\n")
         s = self.summary(*SMALL, "-compare", file)
         self.assertEqual(s["comparison"]["left_out"], ["var_slide"])
@@ -165,11 +143,6 @@ class Refusals(Case):
                                   stdout=table, stderr=subprocess.PIPE, text=True, timeout=60)
         self.assertEqual(done.returncode, 2)
         self.assertIn("-summary = table.txt: is where standard output goes", done.stderr)
-
-    def test_every_rank_knows_but_one_speaks(self):
-        done = run("-delta", "-1", ranks=2, folder=self.folder)
-        self.assertEqual(done.returncode, 2)
-        self.assertEqual(done.stderr.count("-delta = -1"), 1)
 
 
 class Statuses(Case):

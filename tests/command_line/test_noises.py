@@ -185,15 +185,6 @@ class Noises(Case):
         self.refuse_file(HEADER + "-1,1,0\n0,one,1\n1,0,1\n", "line 3", "rate_up = one")
         self.refuse_file(HEADER + "-1,1,0\n0,1,nan\n1,0,1\n", "line 3", "rate_down = nan")
 
-    def test_levels_that_are_no_chain(self):
-        self.refuse_file(HEADER + "1,0,0\n", "at least two levels")
-        self.refuse_file(HEADER + "-1,1,0\n-2,1,1\n1,0,1\n", "line 3: x = -2 must be above", "-1")
-        self.refuse_file(HEADER + "-1,1,0\n-1,1,1\n1,0,1\n", "line 3: x = -1 must be above")
-        self.refuse_file(HEADER + "-1,1,0\n0,0,1\n1,0,1\n", "line 3: rate_up = 0 must be positive")
-        self.refuse_file(HEADER + "-1,1,0\n0,1,-2\n1,0,1\n", "line 3: rate_down = -2 must be positive")
-        self.refuse_file(HEADER + "-1,1,0\n1,0.5,1\n", "line 3: rate_up = 0.5", "must be 0 at the end")
-        self.refuse_file("# two\n" + HEADER + "-1,1,0.5\n1,0,1\n", "line 3: rate_down = 0.5")
-
     def refuse_chain(self, states, rates, *message):
         (self.folder / "states.csv").write_text("x\n" + "".join(f"{x}\n" for x in states))
         (self.folder / "rates.csv").write_text("from,to,rate\n" + "".join(f"{row}\n" for row in rates))
@@ -246,13 +237,6 @@ class Noises(Case):
         self.assertEqual(done.returncode, 0, done.stderr)
         results = json.loads((self.folder / "summary.json").read_text())["results"]
         return {key: result["value"] for key, result in results.items()}
-
-    def test_bodies_that_never_slide_or_never_stick(self):
-        self.refuse(*TELEGRAPH, "-bias", "0", message=("-mu_s = 1", "never slides"))
-        self.refuse(*TELEGRAPH, "-telegraph_amplitude", "2", message=("-mu_s = 1", "never sticks"))
-        (self.folder / "weak.csv").write_text(HEADER + "-0.5,1,0\n0.5,0,1\n")
-        self.refuse("-noise", "file", "-noise_file", "weak.csv",
-                    message=("-mu_s = 1: holds the body on all", "never slides"))
 
     def test_options_of_another_noise(self):
         for option, value in (("-telegraph_amplitude", "1"), ("-telegraph_rate", "1"), ("-noise_file", "x.csv")):

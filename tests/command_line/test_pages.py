@@ -46,14 +46,6 @@ E_V2                            0.1780263033      0.1767987401 [0.1750339, 0.178
 """
 
 
-TWO_HEADINGS = """\
-               noise noise factors assembly total    rel.
-degree layers levels nodes      MB        s     s   error
-     7      8     61    63       2    0.002 0.015       -
-     9      8     63    71       4    0.004 0.023 2.1e-09
-"""
-
-
 class Comparison(unittest.TestCase):
     def differ(self, page, output, *changes):
         """How many lines of a page differ from an output, after the output was changed from one text to another."""
@@ -66,12 +58,6 @@ class Comparison(unittest.TestCase):
         for text in (TABLE, SWEEP, COST, COMPARISON):
             self.assertEqual(printed.differences(text, text), [])
             self.assertEqual(printed.renewed(text, text), text)
-
-    def test_a_digit_within_the_error(self):
-        self.assertEqual(self.differ(TABLE, TABLE, ("0.26763461567621299", "0.26763473")), 0)
-        self.assertEqual(self.differ(TABLE, TABLE, ("0.57387055793035813", "0.5738705573")), 0)
-        self.assertEqual(self.differ(SWEEP, SWEEP, ("0.03380222946", "0.03380223246")), 0)
-        self.assertEqual(self.differ("P = 0.25 +- 3e-02", "P = 0.30 +- 4e-02"), 0)
 
     def test_a_digit_beyond_the_error(self):
         self.assertEqual(self.differ(TABLE, TABLE, ("0.26763461567621299", "0.26763477")), 1)
@@ -88,33 +74,10 @@ class Comparison(unittest.TestCase):
         self.assertEqual(self.differ(TABLE, TABLE, ("4284", "4290")), 1)
         self.assertEqual(self.differ(TABLE, TABLE, ("krylov_pairs = 14", "krylov_pairs = 18")), 1)
 
-    def test_parameters_after_a_table_are_no_row_of_it(self):
-        other = TABLE.replace("delta = 0.125", "delta = 0.25")
-        self.assertEqual(len(printed.differences(TABLE + TABLE, TABLE + other)), 1)
-
-    def test_another_error(self):
-        self.assertEqual(self.differ(TABLE, TABLE, ("6.4e-08   2.4e-07", "2.1e-07   7.7e-07")), 0)
-        self.assertEqual(self.differ(TABLE, TABLE, ("6.4e-08   2.4e-07", "6.4e-07   2.4e-06")), 1)
-        self.assertEqual(self.differ(TABLE, TABLE, ("3.0e-07 mean_slide", "3.0e-05 mean_slide")), 1)
-        self.assertEqual(self.differ(COST, COST, ("4.640732243e-14", "1.2e-15")), 0)  # rounding
-        self.assertEqual(self.differ(COST, COST, ("0.001398055098", "0.01398055098")), 1)
-
     def test_a_word(self):
         self.assertEqual(self.differ(TABLE, TABLE, ("mean_stick", "mean_stay")), 1)
         self.assertEqual(self.differ(TABLE, TABLE, ("reached", "NOT reached")), 1)
         self.assertEqual(self.differ(COMPARISON, COMPARISON, ("agrees", "DISAGREES")), 1)
-
-    def test_times_memory_and_machine_may_be_any(self):
-        self.assertEqual(self.differ(TABLE, TABLE, ("0.04 s in all", "2.1e+02 s in all"), ("0.007  3.0", "7.100  3.0"),
-                                     ("63      4284        2", "63      4284       19")), 0)
-        self.assertEqual(self.differ(COST, COST, ("0.202100236", "1.3"), ("1.44 times", "3 times"), ("0.0056 s", "1 s"),
-                                     ("28\n", "94\n")), 0)
-        self.assertEqual(self.differ("commit 7efda53 of today", "commit 0123456 of today"), 0)
-
-    def test_headings_of_two_lines(self):
-        for old, new, count in (("4    0.004 0.023", "19    3.004 3.170", 0), ("63    71", "63    73", 1),
-                                ("2.1e-09", "2.5e-09", 0), ("2.1e-09", "2.1e-08", 1), ("      -", "1.0e-05", 1)):
-            self.assertEqual(self.differ(TWO_HEADINGS, TWO_HEADINGS, (old, new)), count, new)
 
     def test_lines(self):
         lines = TABLE.splitlines(keepends=True)
@@ -127,28 +90,6 @@ class Comparison(unittest.TestCase):
         self.assertEqual(self.differ("...\n" + lines[-2], TABLE), 1)
         self.assertEqual(self.differ(lines[0] + "...\n", TABLE), 0)
         self.assertEqual(self.differ("", TABLE) + self.differ(TABLE, ""), 1 + len(lines))
-
-    def test_rows_that_are_cut(self):
-        page = "...\n       0.25        0.5      0.03380222946  1.7e-09 ...\n...\n"
-        self.assertEqual(self.differ(page, SWEEP), 0)
-        self.assertEqual(self.differ(page, SWEEP, ("0.03380222946", "0.03480222946")), 1)
-
-
-class Renewal(unittest.TestCase):
-    def test_other_times_change_nothing(self):
-        self.assertEqual(printed.renewed(TABLE, TABLE.replace("0.04 s", "9 s")), TABLE)
-
-    def test_other_numbers_and_forms_are_taken_over(self):
-        output = TABLE.replace("0.26763461567621299   6.4e-08", "0.26763462   6.4e-08").replace("0.04 s", "9 s")
-        self.assertEqual(printed.renewed(TABLE, output), output)
-
-    def test_gaps_and_cuts_stay(self):
-        page = "...\n       0.25        0.5      0.03380222946  1.7e-09 ...\n...\n2 of 2 points reached the accuracy;\n"
-        output = SWEEP.replace("0.03380222946", "0.03480222946")
-        new = printed.renewed(page, output)
-        self.assertEqual(new, page.replace("0.03380222946", "0.03480222946").replace(
-            "accuracy;", "accuracy; 2.15 s in all, 0.06 s of it start-up"))
-        self.assertEqual(printed.differences(new, output), [])
 
 
 class Markdown(unittest.TestCase):

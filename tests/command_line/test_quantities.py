@@ -94,7 +94,7 @@ class Keys(Case):
                 continue
             with self.subTest(quantity=quantity):
                 asked = [quantity, "sticking"] if quantity == "sensitivity" else [quantity]
-                found = set().union(*(self.written(asked, *options) for options in MODELS.values()))
+                found = set().union(*(self.written(asked, *MODELS[model]) for model in ("symmetric", "stribeck")))
                 if quantity == "moments":
                     found |= self.written(asked, *SPRING).keys()
                 if quantity == "sensitivity":

@@ -41,35 +41,6 @@ class Pictures(Case):
             self.assertTrue((self.folder / name).read_bytes().startswith(PNG), name)
         return names
 
-    def test_the_script_follows_what_is_in_the_file(self):
-        self.run_ok(*SCENE, "-route", "monte_carlo", "-excursions", "1000", "-output", "reference.h5")
-        for options, pictures in (
-                (("-quantities", "density,spectrum", "-omega", "0.1,1,10"),
-                 ["f_density.png", "f_spectra.png"]),
-                (("-quantities", "trajectory", "-horizon", "10"), ["f.png"]),
-                (("-quantities", "duration_density", "-time", "0:1:5", "-accuracy", "1e-2"), ["f.png"]),
-                (("-quantities", "slip,peak,displacement", "-distance", "1,2", "-velocity", "0.5", "-time", "1,2",
-                  "-accuracy", "1e-2"), ["f.png"]),
-                (("-compare", "reference.h5"), ["f.png"]),
-                (("-quantities", "noise_law", "-sweep_tau", "0.5,1"), ["f/E_X2.png", "f/P_X_le_mu_s.png"])):
-            self.run_ok(*SCENE, *options, "-output", "f.h5")
-            self.assertEqual(sorted(self.drawn("f.h5")), pictures)
-
-    def test_noises_without_a_step(self):
-        (self.folder / "levels.csv").write_text("x,rate_up,rate_down\n-1,1,0\n0.5,1,1\n2,0,2\n")
-        for noise in (("-noise", "file", "-noise_file", "levels.csv"),
-                      ("-noise", "telegraph", "-telegraph_amplitude", "1", "-telegraph_rate", "2", "-bias", "0.2")):
-            self.run_ok("-mu_d", "0.5", *noise, "-quantities", "density,spectrum,duration_density,trajectory",
-                        "-omega", "0.1,1,10", "-time", "0:1:5", "-horizon", "10", "-accuracy", "1e-2", "-output", "f.h5")
-            self.assertEqual(sorted(self.drawn("f.h5")), [
-                f"f_{kind}.png" for kind in ("density", "durations", "spectra", "trajectory")])
-
-    def test_csv_of_paths_and_sweeps(self):
-        self.run_ok(*SCENE, "-quantities", "trajectory", "-horizon", "10", "-trajectory", "path.csv")
-        self.run_ok(*SCENE, "-quantities", "noise_law", "-sweep_tau", "0.5,1", "-sweep_csv", "s.csv")
-        self.assertEqual(self.drawn("path.csv", "named.png"), ["named.png"])
-        self.assertIn("s/E_X2.png", self.drawn("s.csv"))
-
     def refused(self, *words, message):
         done = plot(*words, folder=self.folder)
         self.assertEqual((done.returncode, done.stdout), (2, ""), done.stderr)
@@ -93,14 +64,6 @@ class Pictures(Case):
             done = plot("path.h5", picture, folder=self.folder)
             self.assertEqual(done.returncode, 2)
             self.assertIn(picture, done.stderr)
-
-    def test_bootstrap_draws(self):
-        file = self.folder / "path.h5"
-        self.run_ok(*SCENE, "-output", file, "-quantities", "trajectory", "-horizon", "10")
-        done = subprocess.run([SOURCES / "bootstrap", "plot", file], capture_output=True, text=True)
-        self.assertEqual(done.stdout, f"{file.with_suffix('.png')}\n", done.stderr)
-        done = subprocess.run([SOURCES / "bootstrap", "plot", "none.h5"], capture_output=True)
-        self.assertEqual(done.returncode, 2)
 
 
 class Report(unittest.TestCase):
@@ -227,16 +190,6 @@ class Pages(Case):
             self.assertIn("1 of 2 entries fail.", text)
             self.assertEqual((text.count("✓ holds"), text.count("✗ fails")), (1, 1))
         self.assertIn("no &lt;program&gt;", (self.folder / "two" / "index.html").read_text())
-
-    def test_the_report_says_first_how_long_it_takes(self):
-        done = subprocess.run([sys.executable, SOURCES / "validation" / "report.py", "--quick", "--cases", "paths",
-                               "--program", BINARIES / "stickslip", self.folder], capture_output=True, text=True)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertRegex(done.stderr.splitlines()[0], "1 entries; all .* take four minutes")
-        found = self.found()
-        self.check(found)
-        self.assertEqual(len(found["paths/index.html"].images), 2)
-        self.assertNotIn("✗", found["index.html"].path.read_text())
 
     def test_every_case_says_what_it_compares(self):
         scripts = (SOURCES / "validation").glob("*/run.py")

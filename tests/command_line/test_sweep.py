@@ -91,18 +91,6 @@ class Interrupted(Case):
 
 
 class Numbers(Case):
-    def test_every_point_equals_a_single_run(self):
-        quantities = ("-quantities", "sticking,moments,laplace,spectrum", "-lambda", "0.5,2",
-                      "-omega", "0,1")
-        s = self.summary(*SMALL, *quantities)
-        self.assertEqual(len(s["runs"]), 6)
-        for entry in s["runs"]:
-            scene = entry["scene"]
-            alone = self.summary("-delta", "0.5", *quantities, "-mu_d", scene["mu_d"], "-tau",
-                                 scene["tau"])
-            self.assertEqual(entry["results"], alone["results"])
-            self.assertEqual(entry["plan"], alone["plan"])
-            self.assertEqual(scene, alone["scene"])
 
     def test_ranks(self):
         self.run_ok(*MANY, "-sweep_csv", "one.csv")
@@ -110,14 +98,6 @@ class Numbers(Case):
             self.run_ok(*MANY, "-sweep_csv", "more.csv", ranks=ranks)
             self.assertEqual((self.folder / "more.csv").read_bytes(),
                              (self.folder / "one.csv").read_bytes())
-
-    def test_several_ranks_to_a_point(self):
-        alone = self.summary(*SMALL)["runs"]
-        for ranks in (2, 3, 4):  # of three ranks one has nothing to do
-            for one, other in zip(alone, self.summary(*SMALL, "-sweep_ranks", "2",
-                                                      ranks=ranks)["runs"]):
-                for key, result in one["results"].items():
-                    self.assert_close(other["results"][key]["value"], result["value"], 1e-12, key)
 
 
 class Files(Case):
@@ -231,16 +211,6 @@ class Ends(Case):
         self.assertEqual(done.returncode, 2)
         self.assertEqual(done.stderr.count("is no checkpoint of a sweep"), 1)
 
-    def test_some_points_fall_short(self):
-        options = ("-delta", "0.5", "-accuracy", "1e-4", "-sweep_v_max", "1,3.7", "-sweep_csv",
-                   "s.csv", "-checkpoint", "kept")
-        for kept in (0, 2):
-            s = self.summary(*options, status=3)
-            self.assertEqual(s["sweep"]["from_record"], kept)
-            self.assertEqual([r["status"] for r in s["runs"]], ["not reached", "reached"])
-            self.assertIn("excludes", s["runs"][0]["message"])
-            self.assertIn(",not reached\n", (self.folder / "s.csv").read_text())
-
     def test_refused_points_stop_no_other_and_are_not_kept(self):
         options = ("-delta", "0.5", "-accuracy", "1e-4", "-sweep_mu_d", "2,0.5", "-sweep_csv",
                    "s.csv", "-output", "s.h5", "-checkpoint", "kept")
@@ -253,14 +223,6 @@ class Ends(Case):
             with h5py.File(self.folder / "s.h5") as file:
                 self.assertEqual(file["sweep/status"][:].tolist(), [4, 0])
                 self.assertTrue(math.isnan(file["sweep/P_stick"][0]))
-
-    def test_points_without_memory_are_tried_again(self):
-        options = ("-sweep_delta", "4e-5,0.5", "-noise_degree", "0", "-quantities", "sticking",
-                   "-checkpoint", "kept")
-        for kept in (0, 1):
-            s = self.summary(*options, status=4)
-            self.assertEqual(s["sweep"]["from_record"], kept)
-            self.assertEqual([r["status"] for r in s["runs"]], ["no memory", "reached"])
 
 
 if __name__ == "__main__":

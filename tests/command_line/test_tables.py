@@ -1,6 +1,5 @@
 """What people read on standard output: digits, units, and lines of 100 characters."""
 
-import decimal
 import re
 import unittest
 
@@ -50,41 +49,6 @@ class Width(Case):
         self.assert_narrow(*SMALL, "-accuracy", "1e-15", status=3)
         self.assert_narrow(*SMALL, "-route", "monte_carlo", "-excursions", "1000", "-output", "reference.h5")
         self.assert_narrow(*SMALL, "-compare", "reference.h5")
-
-
-class Digits(Case):
-    def printed_digits(self, *options):
-        """Of each scalar its key, value and error as printed, and both from the file."""
-        results = self.summary(*options)["results"]
-        for line in self.printed.splitlines():
-            words = line.split()
-            if words and "value" in results.get(words[0], {}) and not isinstance(results[words[0]]["value"], list):
-                result = results.pop(words[0])
-                yield *words[:3], result["value"], result["error"]
-
-    def check(self, *options):
-        rows = list(self.printed_digits(*options))
-        self.assertGreater(len(rows), 8)
-        for key, text, error_text, value, error in rows:
-            with self.subTest(key=key):
-                if error == 0:
-                    self.assertEqual((float(text), error_text), (value, "0"))
-                    continue
-                self.assertEqual(error_text, f"{error:.1e}")
-                place = decimal.Decimal(error_text).adjusted()
-                self.assertEqual(decimal.Decimal(text).as_tuple().exponent, place)
-                self.assertLessEqual(abs(float(text) - value), 0.5 * 10.0**place + 1e-16)
-
-    def test_computed(self):
-        self.check(*SMALL, "-quantities", "sticking,moments,noise_law,sensitivity")
-
-    def test_simulated(self):
-        self.check(*SMALL, "-route", "monte_carlo", "-excursions", "3000")
-
-    def test_files_keep_all_digits(self):
-        for _, text, _, value, error in self.printed_digits(*SMALL, "-accuracy", "1e-4"):
-            if error > 1e-12:
-                self.assertGreater(len(repr(value)), len(text) + 3)
 
 
 class Units(Case):

@@ -25,6 +25,15 @@ from stickslip import __main__, cases, explore, knobs, live_pictures, newest
 from stickslip.program import BadInput, Cancelled
 
 COARSE = {"accuracy": 1e-2}
+ANSWERS = {}
+
+
+def remembered(cancel, **options):
+    """What the program answers; at once, what it was asked before."""
+    case = repr(sorted(options.items()))
+    if case not in ANSWERS:
+        ANSWERS[case] = stickslip.run(cancel=cancel, **options)
+    return ANSWERS[case]
 
 
 class Case(unittest.TestCase):
@@ -33,7 +42,7 @@ class Case(unittest.TestCase):
         self.addCleanup(holder.cleanup)
         self.folder = pathlib.Path(holder.name)
 
-    def explorer(self, options=COARSE, scene=None, compute=stickslip.run):
+    def explorer(self, options=COARSE, scene=None, compute=remembered):
         figure = plt.figure(figsize=explore.FIGURE)
         figure.canvas.draw_idle = lambda: None  # which draws at once where there is no window
         self.addCleanup(plt.close, figure)
@@ -162,7 +171,7 @@ class Pictures(Case):
         def no_spectrum(cancel, **options):
             if options["quantities"] == "spectrum":
                 raise BadInput("-omega = 1: cannot be had")
-            return stickslip.run(cancel=cancel, **options)
+            return remembered(cancel, **options)
 
         made = self.explorer(compute=no_spectrum)
         self.until(made, lambda: made.pictures.quantiles.get_text())
@@ -176,7 +185,7 @@ class Pictures(Case):
             if options["quantities"] == "spectrum" and options["mu_d"] == 0.9:
                 while not wanted.wait(0.01) and not cancel.is_set():
                     pass
-            return stickslip.run(cancel=cancel, **options)
+            return remembered(cancel, **options)
 
         def greyed():
             return [veil.get_visible() for veil in made.pictures.veils]
@@ -331,17 +340,18 @@ class Knobs(Case):
         self.assertLessEqual({"ou", "telegraph", "narrow_band", "filtered", "periodic", "pulses"},
                              set(made.offered["noise"]))
         self.assertEqual(made.offered["drag"], ["linear", "none", "cubic"])  # a formula is no slider
+        worker = cases.Worker()
+        self.addCleanup(worker.end)
         frictions, noises, drags = (made.offered[name] for name in ("friction", "noise", "drag"))
-        pairs = itertools.product(noises, drags)  # with frictions in turn, so that all pairs of choices occur
-        for mu_s, friction, noise, drag in (*((1, frictions[n % len(frictions)], *pair) for n, pair in enumerate(pairs)),
-                                            *itertools.product((2,), ("coulomb",), noises, ("none",))):
+        turns = zip(itertools.cycle(frictions), noises, itertools.cycle(drags))
+        for mu_s, friction, noise, drag in (*((1, *turn) for turn in turns), *((2, "coulomb", noise, "none") for noise in noises)):
             with self.subTest(mu_s=mu_s, friction=friction, noise=noise, drag=drag):
                 made.restart()
                 made.sliders["mu_s"].set_val(mu_s)
                 for choice, word in (("friction", friction), ("noise", noise), ("drag", drag)):
                     made.choose(choice, word)
                 asked = {**made.scene(), "quantities": "sticking,moments", "plan": True}
-                self.assertGreater(stickslip.run(**asked).plan["seconds"], 0)
+                self.assertGreater(worker.run(**asked).plan["seconds"], 0)
 
     def test_start_again_takes_back_all_choices_and_moves(self):
         made = self.explorer(compute=refusing)
@@ -373,7 +383,7 @@ class Knobs(Case):
             if options.get("plan"):
                 return stickslip.Results({}, plan={"seconds": 34.4})
             shown.append(made.status.get_text())
-            return stickslip.run(cancel=cancel, **options)
+            return remembered(cancel, **options)
 
         with unittest.mock.patch.object(newest, "SLOW", 0):
             made = None

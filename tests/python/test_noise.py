@@ -119,7 +119,8 @@ class Runs(unittest.TestCase):
 
     def test_a_periodic_force_with_noise(self):
         chain = noise.periodic(1.2, 4, 16) + noise.ou(0.7, 1, 0.5, levels=4)
-        self.check(chain, {"P_stick": 0.26643150176, "mean_slide": 1.9426508185}, mu_d=0.6, accuracy=1e-8)
+        self.check(chain, {"P_stick": 0.26643150176, "mean_slide": 1.9426508185, "mean_stick": 0.7055692498, "E_V2": 0.156807780853,
+                           "E_absV": 0.262851173522, "E_XV": 0.314518484966}, mu_d=0.6, accuracy=1e-8)
 
     def test_a_narrow_band(self):
         self.check(noise.narrow_band(1, 0.5, 2, 0.5), {"P_stick": 0.460412722, "mean_slide": 1.9094991454}, mu_d=0.5,

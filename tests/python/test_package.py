@@ -90,13 +90,6 @@ class Runs(Case):
         self.assertAlmostEqual(r.density.marginal_x.sum(), 1, delta=1e-9)
         self.assertIsNone(stickslip.run(**SMALL).density)
 
-    def test_densities_at_one_velocity(self):
-        found = stickslip.run(**SMALL, quantities="density").density
-        for v in (0.3, 1e3):
-            self.assertEqual(found.at(v).tolist(), found.at([v])[:, 0].tolist())
-            self.assertEqual(found.marginal(v), found.marginal([v])[0])
-        self.assertLess(len(repr(found)), 400)
-
     def test_densities_are_polynomials_on_elements(self):
         for scheme in ({}, {"scheme": "upwind", "p": 4, "accuracy": 0.1}):
             d = stickslip.run(**{**SMALL, **scheme}, bias=0.1, quantities="density").density
@@ -491,28 +484,11 @@ class Tables(Case):
             self.assertEqual(float(data.S_v_error.sel(mu_d=mu_d, tau=tau, omega=2)), s["S_v"].error[i, j, 1])
         self.assertEqual((data.S_v.dims, data.tau.units), (("mu_d", "tau", "omega"), "time"))
 
-    def test_points_with_abscissae_of_their_own(self):
-        s = stickslip.sweep(mu_s=[1, 2], delta=0.5, quantities="entry_law", accuracy=1e-3)
-        data, table = s.to_xarray(), s.to_pandas()
-        name = s["entry_law"].abscissa_name
-        self.assertEqual(data.entry_law.dims, ("mu_s", "entry_law_number"))
-        numpy.testing.assert_array_equal(data[f"entry_law_{name}"], s["entry_law"].abscissa)
-        rows = table[(table.key == "entry_law") & (table.mu_s == 2)]
-        numpy.testing.assert_array_equal(rows[name], s["entry_law"].abscissa[1])
-        numpy.testing.assert_array_equal(rows.value, s["entry_law"].value[1])
-
     def test_results_that_depend_on_other_values_of_the_same(self):
         one, two = (stickslip.Result(key, numpy.ones(n), numpy.zeros(n), "", ("level",), "level", numpy.arange(n))
                     for key, n in (("a", 2), ("b", 3)))
         data = stickslip.Results({"a": one, "b": two}).to_xarray()
         self.assertEqual((data.a.dims, data.b.dims), (("level",), ("b_level",)))
-
-    def test_simulated_results_have_the_ends_of_intervals(self):
-        r = stickslip.run(**SMALL, quantities="sticking,laplace", lambda_=[1, 2], route="monte_carlo", excursions=500)
-        table, data = r.to_pandas(), r.to_xarray()
-        numpy.testing.assert_array_equal(table[table.key == "F_slide"][["low", "high"]], r["F_slide"].ci95)
-        numpy.testing.assert_array_equal(data.F_slide_high, r["F_slide"].ci95[:, 1])
-        self.assertEqual(float(data.P_stick_low), r["P_stick"].ci95[0])
 
     def test_units_without_a_program(self):
         r = stickslip.run(**SMALL, quantities="spectrum", omega=[1, 2])
@@ -525,12 +501,6 @@ class Tables(Case):
                                f"stickslip.Results({{}}).to_{name}()")
             self.assertEqual(done.stderr.splitlines()[-1], "ImportError: stickslip needs "
                              f"{name} for this: {Failures.advice(name)}")
-
-    def test_names_that_are_not_there(self):
-        r = stickslip.run(**SMALL, quantities="sticking")
-        self.assertRaisesRegex(KeyError, r"P_stik: did you mean P_stick\?", lambda: r["P_stik"])
-        self.assertRaisesRegex(KeyError, "S_v: quantities=\"spectrum\" computes it; there are P_stick, P_slide", lambda: r["S_v"])
-        self.assertEqual((r.get("P_stik"), "P_stik" in r, "P_stick" in r), (None, False, True))
 
     def test_short_texts(self):
         r = stickslip.run(**SMALL, quantities="sticking,spectrum", omega=[1, 2])
@@ -872,15 +842,6 @@ class Pictures(Case):
             self.assertEqual([text.get_text() for text in axes.get_legend().texts], curves)
             self.assertIn(over, axes.get_xlabel())
             self.assertEqual(axes.get_title().partition("\n")[2], said)
-
-    def test_pictures_on_request(self):
-        s = stickslip.sweep(bias=[0.1, 0.2], delta=0.5, quantities="sticking,moments,spectrum", accuracy=1e-2)
-        self.assertEqual(list(s.plot(kind="drift")), ["drift"])
-        self.assertEqual(list(s.plot(self.folder / "one.png", "P_stick")), ["P_stick"])
-        self.assertTrue((self.folder / "one.png").read_bytes().startswith(PNG))
-        for tau in (1, 0.5):
-            stickslip.run(**SMALL, tau=tau, quantities="spectrum", keep=self.folder / f"{tau}.h5")
-        self.assertEqual(self.plot("1.h5", "0.5.h5", "t.png"), ["t.png"])
 
     def test_command_line(self):
         file = self.folder / "λ 1.h5"
