@@ -1,5 +1,4 @@
 #include <cmath>
-#include <map>
 
 #include "../common/catch.hpp"
 #include "../common/chains.hpp"
@@ -73,51 +72,6 @@ TEST_CASE("any chain: five states with jumps of any length, known to twelve digi
                  {"E_V2", 0.052607244296},
                  {"E_V", 0.0299054738533}},
                 1e-11);
-}
-
-// 144 states, of which slides start from 26: these follow one another as a Markov chain.
-TEST_CASE("any chain: a sine and noise, with many starts, known to eleven digits", "[real]") {
-  auto s = test::with_table(kPlain, test::sine_and_levels(1.2, 4, 16, 0.5, 1, 0.7, 4));
-  s.friction.mu_d = 0.6;
-  CHECK(s.meant().starts().size() == 26);
-  require_known(values(asking(s, kMeans, 1e-8)),
-                {{"P_stick", 0.26643150176},
-                 {"mean_slide", 1.9426508185},
-                 {"mean_stick", 0.7055692498},
-                 {"E_V2", 0.156807780853},
-                 {"E_absV", 0.262851173522},
-                 {"E_XV", 0.314518484966}},
-                1e-10);
-}
-
-TEST_CASE("any chain: upwind and elements agree to the errors of upwind", "[real]") {
-  const auto s = test::with_table(kPlain, test::five_states());
-  auto c = asking(s, kMeans, 1e-8);
-  const auto found = values(c);
-  c.method.scheme = cases::Scheme::upwind;
-  c.question.accuracy = 3e-3;
-  for (const auto& [key, r] : values(c)) {
-    INFO(key);
-    CHECK(std::abs(found.at(key).value[0] - r.value[0]) <= r.error[0]);
-  }
-}
-
-// Mean times until a speed is reached are about the mean duration of as many excursions as it
-// takes.
-TEST_CASE("any chain: passages by many starts", "[real]") {
-  auto s = test::with_table(kPlain, test::sine_and_levels(1.2, 4, 6, 0.5, 1, 0.7, 2));
-  s.bias = 0.1;
-  const auto found = values(asking(s, {Quantity::peak, Quantity::sticking}, 1e-7));
-  const auto& peak = found.at("P_peak").value;
-  CHECK(peak[0] > peak[1]);
-  // Were passages independent of where excursions start, the time would be about this.
-  const double excursion = found.at("mean_excursion").value[0];
-  for (std::size_t n = 0; n < peak.size(); ++n) {
-    const double time = found.at("mean_first_passage").value[n];
-    CHECK(time < 1.5 * excursion / peak[n]);
-    CHECK(time > 0.3 * excursion * (1 - peak[n]) / peak[n]);
-    CHECK(found.at("mean_first_passage_rest").value[n] > time);
-  }
 }
 
 // The chain keeps states of both signs, which are known to balance.

@@ -1,5 +1,4 @@
 #include <cmath>
-#include <map>
 
 #include "../common/catch.hpp"
 #include "../common/scenes.hpp"
@@ -8,8 +7,6 @@
 #include "stickslip/run/carry_out.hpp"
 
 using namespace stickslip;
-using cases::Quantity;
-using test::Values;
 using test::values_at_the_time;
 using Kind = model::Start::Kind;
 
@@ -134,29 +131,6 @@ TEST_CASE("displacement distribution: quantiles at atoms, though the density is 
   }
 }
 
-// E[x] = int P(x > d) dd and E[x^2] = 2 int d P(x > d) dd, as no body moves downwards.
-TEST_CASE("displacement distribution: mean and variance are those of the displacement",
-          "[real][long]") {
-  constexpr double step = 0.002, most = 2.8, time = 1.5;
-  std::vector<double> distance;
-  for (int n = 1; step * n * n < most; ++n) distance.push_back(step * n * n);
-  auto c = asking(test::pushed_by_telegraph(), distance, time, 1e-2);
-  c.question.quantities.insert(Quantity::displacement);
-  const auto found = values_at_the_time(c);
-  const auto& cdf = found.at("displacement_cdf").value;
-  double mean = 0, square = 0, before = 0;
-  double beyond = 1 - found.at("displacement_atom").value[0];
-  for (std::size_t n = 0; n < distance.size(); ++n) {
-    const double d = distance[n], now = 1 - cdf[n];
-    mean += (d - before) * (now + beyond) / 2;
-    square += (d - before) * (now * d + beyond * before);
-    before = d;
-    beyond = now;
-  }
-  CHECK(mean == Approx(found.at("displacement_mean").value[0]).epsilon(3e-3));
-  CHECK(square - mean * mean == Approx(found.at("displacement_variance").value[0]).epsilon(1e-2));
-}
-
 TEST_CASE("displacement distribution: its own mirror image with symmetry", "[real]") {
   const auto found =
       values_at_the_time(asking(test::scene(1, 0.5, 1, 0.5, {1, 0}), {-1, -0.2, 0.2, 1}, 2, 1e-2));
@@ -166,20 +140,6 @@ TEST_CASE("displacement distribution: its own mirror image with symmetry", "[rea
   CHECK(f[2] == f[1]);
   CHECK(found.at("displacement_quantile").value[0] == 0);
   CHECK(found.at("displacement_quantile").value[1] > 0);
-}
-
-TEST_CASE("displacement distribution: normal in the end", "[real][long]") {
-  auto s = test::pushed_by_telegraph();
-  constexpr double time = 400;
-  auto c = asking(s, {1}, time, 1e-3);
-  c.question.quantities.insert(Quantity::displacement);
-  const auto found = values_at_the_time(c);
-  const double mean = found.at("displacement_mean").value[0],
-               deviation = std::sqrt(found.at("displacement_variance").value[0]);
-  const auto& quantile = found.at("displacement_quantile");
-  // Skewness falls like t^(-1/2).
-  CHECK(quantile.value[0] == Approx(mean).margin(0.05 * deviation));
-  CHECK(quantile.value[1] == Approx(mean + 1.2816 * deviation).margin(0.05 * deviation));
 }
 
 // By a dense exponential on Chebyshev points in another program, along another line in the plane of
@@ -283,49 +243,4 @@ TEST_CASE("displacement distribution: quantiles lie within their errors, as far 
       CHECK((m < 2 ? 1 : -1) * (cdf.value[m] - p[n]) > cdf.error[m]);
     }
   }
-}
-
-// Most bodies have not turned round yet and lie in a cluster of a tenth of the deviation of all.
-// Simulated, by 2.5e5 paths or more.
-TEST_CASE("displacement distribution: few levels leave narrow clusters", "[real][long]") {
-  const auto of_levels = [](const std::vector<model::Level>& levels, const model::Scene& scene) {
-    auto s = scene;
-    s.noise.table = std::make_shared<const model::LevelTable>(levels);
-    return s;
-  };
-  const auto fast = of_levels({{-2.472, 0.3773, 0},
-                               {-2.424, 4.221, 0.5122},
-                               {-2.39, 0.1243, 4.596},
-                               {-0.9391, 3.923, 0.5276},
-                               {0.9391, 0.5276, 3.923},
-                               {2.39, 4.596, 0.1243},
-                               {2.424, 0.5122, 4.221},
-                               {2.472, 0, 0.3773}},
-                              test::scene(1, 1, 1, 1, {2.661, 0}));
-  const auto cdf = values_at_the_time(asking(fast, {2.081, 2.092, 2.103}, 4.296, 3e-2,
-                                             {fast.noise.table->lowest() + 5, 0}))
-                       .at("displacement_cdf");
-  const double known[] = {0.4906, 0.5932, 0.6748};
-  for (std::size_t n = 0; n < 3; ++n) {
-    INFO(cdf.value[n] << " +- " << cdf.error[n] << " for " << known[n]);
-    CHECK(std::abs(cdf.value[n] - known[n]) <= cdf.error[n] + 0.002);
-    CHECK(cdf.error[n] < 0.5);
-  }
-  const auto slow = of_levels({{-1.429, 2.177, 0},
-                               {-1.394, 1.977, 0.5381},
-                               {-0.7426, 4.915, 0.1912},
-                               {-0.1344, 0.5149, 0.5025},
-                               {0.1344, 4.417, 0.7033},
-                               {0.7426, 0.8214, 1.74},
-                               {1.394, 0.8879, 0.1184},
-                               {1.429, 0, 2.123}},
-                              test::scene(1, 0.5, 1, 1, {1.951, 0}));
-  const auto found =
-      values_at_the_time(asking(slow, {2.15}, 5.153, 3e-2, {slow.noise.table->lowest() + 6, 0}));
-  const auto &at_most = found.at("displacement_cdf"), &median = found.at("displacement_quantile");
-  INFO(at_most.value[0] << " +- " << at_most.error[0] << ", median " << median.value[0] << " +- "
-                        << median.error[0]);
-  CHECK(std::abs(at_most.value[0] - 0.6825) <= at_most.error[0] + 0.002);
-  CHECK(std::abs(median.value[0] - 2.1402) <= median.error[0] + 1e-4);
-  CHECK(found.at("displacement_density").value[0] >= 0);
 }

@@ -9,7 +9,6 @@
 #include "stickslip/run/refine.hpp"
 
 using namespace stickslip;
-using cases::Quantity;
 using test::Values;
 using test::values_at_the_time;
 using Complex = std::complex<double>;
@@ -75,31 +74,6 @@ TEST_CASE("displacement transform: known to ten digits", "[real]") {
   }
 }
 
-// phi = 1 + i k E[x] - k^2 E[x^2]/2 + ...
-TEST_CASE("displacement transform: mean and variance are those of the displacement",
-          "[parallel][long]") {
-  auto s = test::scene(1, 0.5, 1, 0.5, {1, 0});
-  s.bias = 0.2;
-  for (const model::Start& start : {model::Start{0, 0, Kind::stationary},
-                                    model::Start{0, 0, Kind::rest}, model::Start{2, 0.3}}) {
-    auto c = asking(s, {0.02, 0.04}, 2, 1e-8, start);
-    c.question.quantities.insert(Quantity::displacement);
-    const auto found = values_at_the_time(c);
-    const auto [one, error_one] = transform(found, 0);
-    const auto [two, error_two] = transform(found, 1);
-    CHECK(std::max(error_one, error_two) < 1e-5);
-    // Cumulants, without those of the next order, which are below 1e-8 here.
-    const double k = 0.02, tiny = 1e-8;
-    const double mean = (8 * std::arg(one) - std::arg(two)) / (6 * k);
-    const double variance = -(16 * std::log(std::abs(one)) - std::log(std::abs(two))) / (6 * k * k);
-    const double size = std::min(std::abs(one), std::abs(two));
-    CHECK(std::abs(mean - found.at("displacement_mean").value[0]) <
-          (8 * error_one + error_two) / (6 * k * size) + tiny);
-    CHECK(std::abs(variance - found.at("displacement_variance").value[0]) <
-          (16 * error_one + error_two) / (6 * k * k * size) + tiny);
-  }
-}
-
 TEST_CASE("displacement transform: conjugate in the mirror, and even with symmetry",
           "[real][long]") {
   auto s = test::scene(1, 0.5, 1, 0.5, {1, 0.3});
@@ -113,19 +87,6 @@ TEST_CASE("displacement transform: conjugate in the mirror, and even with symmet
   s.bias = -0.3;
   const auto down = transform(values_at_the_time(asking(s, {1}, 2, 1e-6)), 0);
   CHECK(std::abs(up.value - std::conj(down.value)) < up.error + down.error);
-}
-
-TEST_CASE("displacement transform: normal in the end", "[real][long]") {
-  auto s = test::scene(1, 0.5, 1, 0.5, {1, 0});
-  s.bias = 0.2;
-  constexpr double k = 0.1, time = 400;
-  auto c = asking(s, {k}, time, 1e-6);
-  c.question.quantities.insert({Quantity::moments, Quantity::spectrum});
-  const auto found = values_at_the_time(c);
-  const double mean = found.at("E_V").value[0], s0 = found.at("S_0").value[0];
-  const Complex normal = std::exp(Complex(-k * k * s0 * time / 2, k * mean * time));
-  // The next cumulant is about k^3 S_0 tau^2 t.
-  CHECK(std::abs(transform(found, 0).value - normal) < 0.2 * std::abs(normal));
 }
 
 TEST_CASE("displacement transform: simulated, within 4.5 sigma", "[real]") {

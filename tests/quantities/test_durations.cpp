@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <cmath>
 
 #include "../common/catch.hpp"
@@ -8,15 +7,9 @@
 #include "../common/solved.hpp"
 #include "stickslip/generator/velocity_methods.hpp"
 #include "stickslip/linalg/dense.hpp"
-#include "stickslip/linalg/petsc.hpp"
 #include "stickslip/quantities/durations.hpp"
 
 using namespace stickslip;
-using generator::Branch;
-using generator::KolmogorovOperator;
-using generator::StaticPhase;
-using generator::Symmetry;
-using linalg::check;
 using quantities::DurationDistribution;
 using quantities::Uncertain;
 using Matrix = linalg::Matrix<double>;
@@ -127,7 +120,7 @@ model::Process process_with(double mu_s, double mu_d, int levels = 8) {
 }  // namespace
 
 TEST_CASE("durations: densities integrate to 1, with the means and variances of the moments",
-          "[slow]") {
+          "[slow][real]") {
   for (const auto& [name, d] : samples()) {
     Solved s(d);
     const auto m = quantities::duration_moments(s.systems, s.distribution, s.entry());
@@ -146,55 +139,7 @@ TEST_CASE("durations: densities integrate to 1, with the means and variances of 
   }
 }
 
-TEST_CASE("durations: densities have the transforms of the operators", "[parallel]") {
-  const auto d = test::on_hp(scene(1, 0.25, 1, 0.5, {1, 0}), 10);
-  Solved s(d);
-  const auto q = all_times(150);
-  const auto all = distributions(s, q.node, 1e-9);
-  for (double lambda : {0.1, 1.0, 10.0, 100.0}) {
-    const auto known = quantities::sliding_transforms(s.systems, s.distribution, lambda);
-    const auto stick = quantities::stick_transform(d.process, lambda, s.entry());
-    s.systems.release({lambda, Symmetry::even});
-    const auto weight = [lambda](double t) { return std::exp(-lambda * t); };
-    INFO("lambda " << lambda);
-    CHECK(std::abs(integral(q, all.slide, weight).value - known.slide.value) < 1e-8);
-    CHECK(std::abs(integral(q, all.excursion, weight).value - known.excursion.value) < 1e-8);
-    CHECK(relative_difference(integral(q, all.stick, weight).value, stick.value) < 1e-11);
-  }
-}
-
-TEST_CASE("durations: distributions rise to 1 and are the integrals of the densities", "[slow]") {
-  const std::vector<double> ends{0, 0.05, 0.2, 0.7, 2, 6, 20, 200};
-  std::vector<double> time = ends;
-  std::vector<test::Quadrature> parts;
-  for (std::size_t n = 1; n < ends.size(); ++n) {
-    parts.push_back(test::panels(ends[n - 1], ends[n], n == 1 ? 8 : 6));
-    time.insert(time.end(), parts.back().node.begin(), parts.back().node.end());
-  }
-  for (const auto& [name, d] : samples()) {
-    Solved s(d);
-    const auto all = distributions(s, time, 1e-9);
-    for (std::size_t which = 0; which < std::size(kAll); ++which) {
-      const auto& duration = all.*kAll[which];
-      INFO(name << ", " << kNames[which]);
-      CHECK(std::abs(duration.distribution[0].value) < 1e-9);
-      std::size_t at = ends.size();
-      for (std::size_t n = 1; n < ends.size(); ++n) {
-        const auto& part = parts[n - 1];
-        const double within =
-            part.sum([&](std::size_t p) { return duration.density[at + p].value; });
-        at += part.node.size();
-        const double rise = duration.distribution[n].value - duration.distribution[n - 1].value;
-        CHECK(rise > -1e-9);
-        // The first part has the layer of the shortest sliding phases.
-        if (n > 1 && n + 1 < ends.size()) CHECK(std::abs(rise - within) < 1e-8);
-      }
-      CHECK(std::abs(duration.distribution[ends.size() - 1].value - 1) < 1e-8);
-    }
-  }
-}
-
-TEST_CASE("durations: errors of distributions and densities cover finer models", "[slow]") {
+TEST_CASE("durations: errors of distributions and densities cover finer models", "[slow][real]") {
   const auto all_samples = samples();
   for (std::size_t sample : {0, 2, 4}) {
     const auto& [name, d] = all_samples[sample];
@@ -241,20 +186,6 @@ TEST_CASE("durations: upwind equals dense exponentials on the whole grid", "[par
       CHECK(std::abs(all.excursion.density[n].value - excursion.density(time[n])) < 1e-8);
       CHECK(std::abs(all.excursion.distribution[n].value - excursion.distribution(time[n])) < 1e-8);
     }
-  }
-}
-
-TEST_CASE("durations: sticking starts to end at the rate of its edges") {
-  for (const auto& [name, d] : samples()) {
-    Solved s(d);
-    const int k = d.process.highest_static();
-    const auto entry = s.entry();
-    const double rate = d.process.noise.rate() * (d.process.noise.up(k) * entry.back().value +
-                                                  d.process.noise.down(-k) * entry[0].value);
-    const auto duration = quantities::stick_distribution(d.process, entry, {0});
-    INFO(name);
-    CHECK(relative_difference(duration.density[0].value, rate) < 1e-14);
-    CHECK(duration.distribution[0].value == 0);
   }
 }
 
@@ -353,29 +284,5 @@ TEST_CASE("durations: means are those of the stationary distribution, and moment
     CHECK(m.var_stick.value > 0);
     // Where a sliding phase ends depends on its duration; the parts are not independent.
     CHECK(m.var_excursion.value != Approx(m.var_slide.value + m.var_stick.value).epsilon(1e-3));
-  }
-}
-
-// log F(lambda) = -mean lambda + variance lambda^2/2 - ...: second differences from 0 on, with the
-// term of third order extrapolated away.
-TEST_CASE("durations: variances are those of transforms at small lambda") {
-  const auto d = test::on_hp(scene(1, 0.25, 1, 0.5, {1, 0}), 8);
-  Solved s(d);
-  const auto m = quantities::duration_moments(s.systems, s.distribution, s.entry());
-  const auto logs = [&](double lambda) {
-    const auto t = quantities::sliding_transforms(s.systems, s.distribution, lambda);
-    const double stick = quantities::stick_transform(d.process, lambda, s.entry()).value;
-    s.systems.release({lambda, Symmetry::even});
-    return std::vector<double>{std::log(t.slide.value), std::log(stick),
-                               std::log(t.excursion.value)};
-  };
-  const double h = 1e-3;
-  const auto half = logs(h / 2), one = logs(h), two = logs(2 * h);
-  const std::vector<Uncertain> variances{m.var_slide, m.var_stick, m.var_excursion};
-  for (std::size_t n = 0; n < 3; ++n) {
-    const double coarse = (two[n] - 2 * one[n]) / (h * h);
-    const double fine = 4 * (one[n] - 2 * half[n]) / (h * h);
-    INFO(kNames[n]);
-    CHECK(relative_difference(2 * fine - coarse, variances[n].value) < 1e-3);
   }
 }

@@ -1,9 +1,7 @@
 #include <cmath>
-#include <map>
 
 #include "../common/catch.hpp"
 #include "../common/chains.hpp"
-#include "../common/near.hpp"
 #include "../common/scenes.hpp"
 #include "../common/values.hpp"
 #include "stickslip/case/displacement_rows.hpp"
@@ -11,7 +9,6 @@
 
 using namespace stickslip;
 using cases::Quantity;
-using test::Values;
 using test::values;
 
 namespace {
@@ -143,29 +140,6 @@ TEST_CASE("large deviations: known to ten digits", "[real][long]") {
   s.bias = 0.3;
   require_near(values(asking(s, {-0.5, -0.2, 0.2, 0.5}, 1e-8)).at("theta"),
                {-0.0065763195, -0.0203817764, 0.0465924983, 0.1915162390}, 1e-8, 6e-11);
-}
-
-// theta = s E_V + s^2 S_0/2 + ..., convex, and the same in the mirror.
-TEST_CASE("large deviations: near s = 0 mean and variance of the displacement", "[real]") {
-  auto s = test::scene(1, 0.5, 1, 0.5, {1, 0.5});
-  s.bias = 0.2;
-  constexpr double h = 0.02;
-  auto c = asking(s, {-2 * h, -h, 0, h, 2 * h}, 1e-9);
-  c.question.quantities.insert({Quantity::moments, Quantity::spectrum});
-  const auto found = values(c);
-  const auto& theta = found.at("theta").value;
-  const auto& velocity = found.at("tilted_velocity").value;
-  CHECK(theta[2] == 0);
-  CHECK(velocity[2] == Approx(found.at("E_V").value[0]).epsilon(1e-9));
-  const double slope = (8 * (velocity[3] - velocity[1]) - velocity[4] + velocity[0]) / (12 * h);
-  CHECK(slope == Approx(found.at("S_0").value[0]).epsilon(1e-5));
-  const double mean = (8 * (theta[3] - theta[1]) - theta[4] + theta[0]) / (12 * h);
-  CHECK(mean == Approx(velocity[2]).epsilon(1e-5));
-  for (double rate : found.at("rate_function").value) CHECK(rate >= -1e-13);
-  s.bias = -0.2;
-  const auto mirrored = values(asking(s, {2 * h, h}, 1e-9)).at("theta").value;
-  CHECK(mirrored[0] == Approx(theta[0]).epsilon(1e-9));
-  CHECK(mirrored[1] == Approx(theta[1]).epsilon(1e-9));
 }
 
 TEST_CASE("large deviations: what a truncation velocity leaves out is in the error", "[real]") {

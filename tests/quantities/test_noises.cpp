@@ -1,5 +1,4 @@
 #include <cmath>
-#include <map>
 
 #include "../common/catch.hpp"
 #include "../common/near.hpp"
@@ -65,32 +64,6 @@ model::Scene moved(const model::Scene& s, double shift) {
 
 }  // namespace
 
-// P_stick = (mu_d - g)/(mu_d + a - g) whatever the rate.
-TEST_CASE("telegraph noise: closed forms without drag") {
-  for (double rate : {0.05, 1.0, 20.0}) {
-    const auto found = values(telegraph(0.3, {0, 0}, rate));
-    CHECK(found.at("P_stick").value[0] == Approx(1.0 / 6).epsilon(1e-11));
-    CHECK(found.at("mean_slide").value[0] == Approx(5 / rate).epsilon(1e-11));
-    CHECK(found.at("mean_excursion").value[0] == Approx(6 / rate).epsilon(1e-11));
-    CHECK(found.at("E_absV").value[0] * 6 / rate == Approx(12 / (rate * rate)).epsilon(1e-11));
-    require_close(values(telegraph(0.3, {0, 0}, rate), Route::fluid_queue), found, 1e-11);
-  }
-}
-
-TEST_CASE("telegraph noise: closed forms with linear drag, by every method", "[parallel]") {
-  const auto s = telegraph(0.3, {1, 0});
-  for (auto route : {Route::excursion, Route::lambda, Route::null_vector}) {
-    const auto found = values(s, route, 1e-8);
-    CHECK(found.at("P_stick").value[0] == Approx(0.375).epsilon(1e-7));
-    CHECK(found.at("E_V").value[0] == Approx(0.25).epsilon(1e-7));
-  }
-  const auto exact = values(s);
-  CHECK(exact.at("P_stick").value[0] == Approx(0.375).epsilon(1e-11));
-  CHECK(exact.at("E_V").value[0] == Approx(0.25).epsilon(1e-11));
-  const auto hit = values(s, Route::hitting, 1e-10, {Quantity::sticking});
-  CHECK(hit.at("P_stick").value[0] == Approx(0.375).epsilon(1e-10));
-}
-
 TEST_CASE("telegraph noise: the mirror image starts downwards") {
   const std::set<Quantity> asked{Quantity::sticking, Quantity::moments, Quantity::entry_law,
                                  Quantity::laplace, Quantity::resolvent};
@@ -109,23 +82,6 @@ TEST_CASE("telegraph noise: the mirror image starts downwards") {
   CHECK_FALSE(down.contains("entry_law"));
   CHECK(down.contains("entry_law_minus"));
   CHECK_FALSE(down.contains("h_plus"));
-}
-
-TEST_CASE("noise levels moved by a constant force are the same process", "[real][long]") {
-  const std::set<Quantity> asked{
-      Quantity::sticking, Quantity::moments,         Quantity::entry_law,       Quantity::laplace,
-      Quantity::spectrum, Quantity::autocorrelation, Quantity::duration_density};
-  const auto s = scene(1, 0.45, 1, 0.5, {1, 0.1});
-  const auto expected = values(s, Route::excursion, 1e-9, asked);
-  auto found = values(moved(s, -0.4), Route::excursion, 1e-9, asked);
-  for (const char* key :
-       {"C_vv", "f_slide", "cdf_slide", "f_excursion", "cdf_excursion", "variance_from_spectrum"}) {
-    CHECK(found.at(key).value[0] == Approx(expected.at(key).value[0]).epsilon(1e-6));
-    found.at(key) = expected.at(key);
-  }
-  // What depends on x itself.
-  for (const char* key : {"E_XV"}) found.at(key) = expected.at(key);
-  require_close(found, expected, 1e-9);
 }
 
 TEST_CASE("noise levels in groups: unsymmetric ones as well as symmetric ones", "[parallel]") {
@@ -148,24 +104,6 @@ TEST_CASE("noise levels in groups: unsymmetric ones as well as symmetric ones", 
   CHECK(std::abs(found.at("E_V").value[0]) < 1e-8);
   for (const char* key : {"E_V", "E_XV"}) expected.erase(key);
   require_close(found, expected, 1e-8);
-}
-
-TEST_CASE("noise deviation: what is multiplied by it scales") {
-  const double c = 0.37;
-  const auto s = scene(1, 0.3, 0.8, 0.2, {1, 0});
-  auto scaled = scene(c, 0.3 * c, 0.8, 0.2 * c, {1, 0});
-  scaled.noise.deviation = c / std::sqrt(0.8);
-  const auto one = values(s), other = values(scaled);
-  for (const auto& [key, power] : {std::pair{"P_stick", 0},
-                                   {"mean_slide", 0},
-                                   {"mean_stick", 0},
-                                   {"E_absV", 1},
-                                   {"E_V2", 2},
-                                   {"E_XV", 2}}) {
-    INFO(key);
-    CHECK(relative_difference(other.at(key).value[0], std::pow(c, power) * one.at(key).value[0]) <
-          1e-12);
-  }
 }
 
 // The rate is 1/2, and bodies at their largest speed come to rest after the same time, whose phase

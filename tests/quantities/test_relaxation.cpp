@@ -7,8 +7,6 @@
 #include "../common/scenes.hpp"
 #include "stickslip/generator/resolvents.hpp"
 #include "stickslip/linalg/petsc.hpp"
-#include "stickslip/quantities/density.hpp"
-#include "stickslip/quantities/engines/excursions.hpp"
 #include "stickslip/quantities/relaxation.hpp"
 
 using namespace stickslip;
@@ -110,27 +108,6 @@ double largest_modulus(const RelaxationMode& mode) {
   return over_ranks(largest, MPI_MAX);
 }
 
-// pi(phi) by the density of the stationary distribution; no state may be missing there.
-std::complex<double> average(const quantities::DensityField& density,
-                             const generator::VelocityDiscretisation& velocities,
-                             const RelaxationMode& mode) {
-  const std::size_t half = velocities.nodes().size();
-  const int n = static_cast<int>(density.atom.size() / 2);
-  const int k = static_cast<int>(mode.at_rest.size() / 2);
-  const auto& pdf = density.pdf.local_rows();
-  const auto& imaginary = mode.imaginary.local_rows();
-  std::size_t at = 0;
-  std::complex<double> sum = 0;
-  for_each_value(mode.real, [&](int, std::size_t j, double value) {
-    const double weight = velocities.weights()[j < half ? half - 1 - j : j - half];
-    sum += weight * pdf[at] * std::complex<double>(value, imaginary[at]);
-    ++at;
-  });
-  sum = {over_ranks(sum.real(), MPI_SUM), over_ranks(sum.imag(), MPI_SUM)};
-  for (int i = -k; i <= k; ++i) sum += density.atom[n + i] * mode.at_rest[k + i];
-  return sum;
-}
-
 }  // namespace
 
 // L x = -x/tau and L (x^2 - 1/tau) = -2/tau (x^2 - 1/tau) on the whole noise range, whatever the
@@ -168,19 +145,6 @@ TEST_CASE("relaxation: slowest modes first, of one parity and largest modulus 1"
       CHECK(largest_modulus(mode) == Approx(1).epsilon(1e-5));
       before = mode.rate.real();
     }
-  }
-}
-
-// pi(L f) = 0 for every f, so that pi(phi) = 0 for every mode; odd ones have no average anyway.
-TEST_CASE("relaxation: modes have no stationary average", "[parallel]") {
-  for (const auto& c : sample_cases()) {
-    const auto& velocities = c.discrete.velocities;
-    if (velocities->keeps_origin() || c.symmetry == Symmetry::odd) continue;
-    linalg::SolverStatistics statistics;
-    Systems systems(PETSC_COMM_WORLD, c.discrete, statistics);
-    const auto density = quantities::density_field(quantities::StationaryDistribution(systems));
-    REQUIRE(std::abs(density.truncated_mass) < 1e-12);
-    for (const auto& mode : solve(c)) CHECK(std::abs(average(density, *velocities, mode)) < 1e-11);
   }
 }
 

@@ -169,28 +169,6 @@ TEST_CASE("resolvent: an excursion ends at s+ or s-, now or later", "[parallel]"
   }
 }
 
-TEST_CASE("resolvent: pi at lambda = 0 are the stationary averages", "[parallel]") {
-  const auto f = observables({"stick", "v^2", "|v|", "x*v"});
-  for (const auto& d : sample_discretisations()) {
-    Discretised made(d);
-    const quantities::StationaryDistribution distribution(made.systems);
-    quantities::Results known;
-    quantities::append_sticking(distribution.excursion(), known);
-    quantities::append_moments(d, distribution.excursion(), known);
-    const auto value = [&known](const std::string& key) {
-      const auto same = [&key](const auto& result) { return result.key == key; };
-      return std::find_if(known.begin(), known.end(), same)->value[0];
-    };
-    const auto r = quantities::resolvent(made.systems, 0, f);
-    CHECK(relative_difference(r.from_plus.w_one.value, value("mean_excursion")) < 1e-11);
-    const std::vector<std::string> keys{"P_stick", "E_V2", "E_absV", "E_XV"};
-    for (std::size_t n = 0; n < keys.size(); ++n) {
-      INFO(keys[n]);
-      CHECK(relative_difference(r.of[n].pi_lambda.value, value(keys[n])) < 1e-11);
-    }
-  }
-}
-
 TEST_CASE("resolvent: what is zero by symmetry is exactly zero", "[parallel]") {
   const auto d = test::on_hp(sample_scenes()[0], 4, 1e-8);
   Discretised made(d);

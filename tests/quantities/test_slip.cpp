@@ -2,7 +2,6 @@
 #include <cmath>
 
 #include "../common/catch.hpp"
-#include "../common/near.hpp"
 #include "../common/solved.hpp"
 #include "stickslip/linalg/vectors.hpp"
 #include "stickslip/quantities/displacement.hpp"
@@ -11,10 +10,7 @@
 #include "stickslip/quantities/spectra.hpp"
 
 using namespace stickslip;
-using generator::Branch;
-using generator::Clock;
 using generator::StaticPhase;
-using generator::Symmetry;
 using quantities::FirstPassage;
 using test::Solved;
 
@@ -129,22 +125,6 @@ TEST_CASE("first passage: the mean time solves its backward equation", "[paralle
         CHECK(linalg::dot(rest, time.x) == Approx(found.from_rest.value).epsilon(1e-9));
         solved.systems.keep({});
       }
-    }
-  }
-}
-
-TEST_CASE("first passage: converges with elements that shrink towards the speed") {
-  for (const auto& s : {linear(), by_direction()}) {
-    for (double w : {0.05, 0.5, 1.2}) {
-      const auto at = [&](int degree) {
-        Solved solved(test::on_hp(s, degree, 1e-14));
-        return quantities::first_passage(solved.systems, solved.distribution.starts(), w);
-      };
-      const auto coarse = at(6), fine = at(9), finest = at(12);
-      const double change = std::abs(fine.exceeded.value / finest.exceeded.value - 1);
-      CHECK(change < 1e-8);
-      CHECK(std::abs(coarse.exceeded.value / finest.exceeded.value - 1) < 1e-5);
-      CHECK(fine.from_slide.value == Approx(finest.from_slide.value).epsilon(1e-8));
     }
   }
 }

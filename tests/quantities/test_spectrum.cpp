@@ -131,18 +131,6 @@ TEST_CASE("spectrum: known values by the reduced model", "[parallel]") {
   }
 }
 
-TEST_CASE("spectrum: known values by complex solves") {
-  for (const auto& table : known_values()) {
-    Solved s(test::on_hp(scene(1, 0.25, 1, table.delta, {1, 0}), 9));
-    const auto direct = quantities::direct_spectrum(s.systems, s.distribution, frequencies(table));
-    for (std::size_t n = 0; n < table.values.size(); ++n) {
-      INFO("delta " << table.delta << " omega " << table.values[n].omega);
-      CHECK(is(direct[n].value, table.values[n]));
-    }
-    CHECK(s.statistics.factorizations_complex >= 4);
-  }
-}
-
 TEST_CASE("spectrum: the reduced model agrees with complex solves, within its errors", "[slow]") {
   const std::vector<double> omega{0, 1e-3, 0.01, 0.05, 0.1, 0.3, 0.7, 1, 2, 5, 10, 25, 50};
   for (const auto& [name, d] : samples()) {
@@ -200,27 +188,6 @@ TEST_CASE("spectrum: upwind equals dense solves on the whole grid") {
       INFO("tau " << c.tau << " omega " << omega[n]);
       CHECK(relative_difference(r.spectrum.value[n].value, dense(omega[n]) + left_out) < 1e-9);
     }
-  }
-}
-
-// The acceleration jumps, so that S_v falls as omega^-4 for ever.
-TEST_CASE("spectrum: omega^4 S_v is constant far out") {
-  for (const auto& [name, d] : small_samples()) {
-    Solved s(d);
-    const std::vector<double> omega{1e5, 3e5, 1e6, 3e6, 1e7};
-    const auto r = reduced(s, omega, 1e-8);
-    const auto scaled = [&](std::size_t n) {
-      return r.spectrum.value[n].value * std::pow(omega[n], 4);
-    };
-    for (std::size_t n = 0; n < omega.size(); ++n) {
-      INFO(name << " omega " << omega[n]);
-      CHECK(scaled(n) > 0);
-      CHECK(relative_difference(scaled(n), scaled(4)) < 1e-6);
-    }
-    // Every noise jump while the body slides, and more: 2/tau^2 P_slide at least.
-    const auto& e = s.distribution.excursion();
-    const double tau = d.process.noise.tau;
-    CHECK(scaled(4) > 2 / (tau * tau) * e.mean_slide() / e.mean_excursion());
   }
 }
 

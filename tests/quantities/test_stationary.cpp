@@ -138,25 +138,6 @@ TEST_CASE("stationary distribution: power put in by the noise equals power dissi
   }
 }
 
-TEST_CASE("stationary distribution: P(|X| <= mu_s) summed over the grid at every scheme and p") {
-  const double delta = GENERATE(0.5, 0.25);
-  auto s = scene(1, 0.25, 1, delta, {1, 0});
-  s.noise_levels = s.full_levels();
-  const int k = s.meant().highest_static();
-  const double closed = model::noise_moments(s.meant().noise, -k, k).within;
-  std::vector<run::Resolution> resolutions{run::hp_resolution(s, 1, 0, 1e-8),
-                                           run::hp_resolution(s, 8, 0, 1e-8)};
-  for (int p : {1, 2, 7, 64}) resolutions.push_back(run::upwind_resolution(s, p, 1e-8));
-  for (const auto& resolution : resolutions) {
-    const auto distribution = solve(s, resolution);
-    const auto marginal =
-        marginal_of_noise(distribution.discretisation(), distribution.excursion());
-    double within = 0;
-    for (int i = -k; i <= k; ++i) within += marginal[*s.noise_levels + i];
-    CHECK(std::abs(within - closed) < 1e-12);
-  }
-}
-
 TEST_CASE("density: integrates to the distribution it came from", "[parallel][long]") {
   const auto s = scene(1, 0.25, 1, 0.25, {1, 0});
   for (const auto& resolution : sample_resolutions(s)) {
@@ -192,16 +173,4 @@ TEST_CASE("density: integrates to the distribution it came from", "[parallel][lo
       CHECK(mass == Approx(field.noise_marginal[level]).epsilon(1e-10).margin(1e-13));
     }
   }
-}
-
-TEST_CASE("density: distribution functions of two discretisations approach each other") {
-  const auto s = scene(1, 0.25, 1, 0.25, {1, 0});
-  const auto coarse = solve(s, run::hp_resolution(s, 3, 0, 1e-6));
-  const auto middle = solve(s, run::hp_resolution(s, 6, 0, 1e-9));
-  const auto fine = solve(s, run::hp_resolution(s, 9, 0, 1e-12));
-  const auto finest = quantities::speed_distribution(fine);
-  const double first = quantities::distance(quantities::speed_distribution(coarse), finest);
-  const double second = quantities::distance(quantities::speed_distribution(middle), finest);
-  CHECK(second < first / 2);
-  CHECK(second > 0);
 }

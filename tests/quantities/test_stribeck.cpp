@@ -38,27 +38,6 @@ Values values(const model::Scene& s, int degree = 11) { return values(test::on_h
 
 }  // namespace
 
-// By elements of degree 24 in other code.
-TEST_CASE("stribeck: known values to ten digits") {
-  const std::vector<std::pair<double, Values>> known{{0.1,
-                                                      {{"P_stick", 0.42027641456},
-                                                       {"mean_slide", 1.19379291929},
-                                                       {"E_V2", 0.15566674581},
-                                                       {"E_absV", 0.22351933315}}},
-                                                     {0.02,
-                                                      {{"P_stick", 0.34589070474},
-                                                       {"mean_slide", 1.65983452192},
-                                                       {"E_V2", 0.17162127108},
-                                                       {"E_absV", 0.25442017700}}}};
-  for (const auto& [velocity, expected] : known) {
-    const auto found = values(weakening(0.5, velocity));
-    for (const auto& [key, value] : expected) {
-      INFO(key << " at v_s = " << velocity);
-      CHECK(std::abs(found.at(key) - value) < 2e-10);
-    }
-  }
-}
-
 TEST_CASE("stribeck: what does not weaken is Coulomb friction, to the last bit") {
   const auto coulomb = values(scene(1, 1, 1, 0.25, {1, 0}));
   for (const auto& [key, value] : values(weakening(1, 0.1))) CHECK(value == coulomb.at(key));

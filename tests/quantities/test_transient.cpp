@@ -56,15 +56,6 @@ test::Discrete on_all_levels(const model::Scene& s) {
 
 }  // namespace
 
-TEST_CASE("transient: at time 0 the autocorrelation is the variance", "[parallel]") {
-  for (const auto& d : {small_hp(), small_upwind()}) {
-    Solved s(d);
-    const auto c = quantities::autocorrelation(s.systems, s.distribution, {1, 0}, 1e-6);
-    CHECK(relative_difference(c[1].value, s.mean_square_velocity()) < 1e-12);
-    CHECK(c[0].value < c[1].value);
-  }
-}
-
 // S_v(omega) = 2 int_0^inf C_vv cos(omega t) dt.
 TEST_CASE("transient: the cosine transform of the autocorrelation is the spectrum") {
   const std::vector<double> omega{0, 0.1, 1, 10};
@@ -94,20 +85,6 @@ TEST_CASE("transient: at time 0 expectations are the values at the start", "[par
       const auto u = expectation(s, f, start, {0, 0.5}, 1e-7);
       INFO("level " << start.level << " v " << start.v);
       CHECK(u[0].value == Approx(at_start(d.process, f, start)).margin(1e-6));
-    }
-  }
-}
-
-TEST_CASE("transient: rest is known at rest only") {
-  for (const auto& d : {small_hp(), small_upwind()}) {
-    Solved s(d);
-    for (const auto& start : starts()) {
-      const bool rest = start.v == 0 && std::abs(start.level) <= 2;
-      const auto u = expectation(s, observable("stick"), start, {0, 1}, 1e-6);
-      INFO("level " << start.level << " v " << start.v);
-      CHECK(u[0].value == Approx(rest ? 1 : 0).margin(1e-5));
-      CHECK(u[1].value > 0);
-      CHECK(u[1].value < 1);
     }
   }
 }
@@ -154,16 +131,6 @@ TEST_CASE("transient: the noise forgets its start in closed form", "[parallel]")
   }
 }
 
-TEST_CASE("transient: 1 stays 1", "[parallel]") {
-  for (const auto& d : {small_hp(), small_upwind()}) {
-    Solved s(d);
-    for (const auto& start : {Start{0, 0}, {3, 0}, {-2, -0.5}}) {
-      const auto u = expectation(s, observable("1"), start, {0, 0.1, 5, 100}, 1e-6);
-      for (const auto& value : u) CHECK(std::abs(value.value - 1) < 1e-11);
-    }
-  }
-}
-
 // Seen from x = 0 at rest, up and down are the same.
 // x^2 - 1 decays as a whole: the model needs one direction, which x = 1 does not see.
 TEST_CASE("transient: an eigenfunction stays 0 where it is 0", "[parallel]") {
@@ -202,21 +169,6 @@ TEST_CASE("transient: what is expected of f scales with f") {
         CHECK(other[n].error < 1e-3 * factor);
         CHECK(other[n].error > 1e-17 * factor);
       }
-    }
-  }
-}
-
-TEST_CASE("transient: expectations turn with the start") {
-  Solved s(small_hp());
-  const std::vector<double> time{0.2, 1};
-  for (const auto& [level, v] : {std::pair{3, 0.0}, {-2, 0.5}}) {
-    const auto at = [&, level = level, v = v](const char* name, int sign) {
-      return expectation(s, observable(name), {sign * level, sign * v}, time, 1e-8);
-    };
-    const auto odd = at("v", 1), turned = at("v", -1), even = at("x*v", 1), same = at("x*v", -1);
-    for (std::size_t n = 0; n < time.size(); ++n) {
-      CHECK(odd[n].value == Approx(-turned[n].value).epsilon(1e-12));
-      CHECK(even[n].value == Approx(same[n].value).epsilon(1e-12));
     }
   }
 }
