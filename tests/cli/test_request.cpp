@@ -168,13 +168,6 @@ TEST_CASE("request: full stands for the largest noise range") {
   CHECK(r.scene.noise_levels == 32);
 }
 
-TEST_CASE("request: no drag means no coefficient, and a useless one is reported") {
-  const Request r = Given("-drag none -drag_coefficient 3").read();
-  CHECK(r.scene.drag.linear == 0);
-  REQUIRE(r.warnings.size() == 1);
-  CHECK_THAT(r.warnings[0], Catch::Contains("-drag_coefficient"));
-}
-
 TEST_CASE("request: drag as an expression") {
   const Request r = Given("-drag expression -drag_expression 0-mu_s*v-0.1*v*abs(v)").read();
   CHECK(r.scene.drag(2) == Approx(-2.4));
@@ -608,12 +601,6 @@ TEST_CASE("request: what is simulated, and how well, arrives where it belongs") 
   CHECK(usual.study.repeats == 3);
   CHECK(usual.sweep_ranks == 1);
   CHECK(Given("-seed 7").read().warnings.size() == 1);
-}
-
-TEST_CASE("request: a cubic coefficient counts with cubic drag only") {
-  const Request r = Given("-drag linear -drag_cubic 3").read();
-  CHECK(r.scene.drag.cubic == 0);
-  CHECK(r.warnings.size() == 1);
 }
 
 TEST_CASE("request: starts are states that occur, or distributions") {

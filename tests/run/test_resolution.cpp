@@ -27,27 +27,6 @@ model::Scene scene(double mu_s, double mu_d, double tau, double delta) {
 
 }  // namespace
 
-TEST_CASE("noise range: beyond mu_s by as much as the tolerance asks, within the full range") {
-  for (double mu_s : {0.1, 1.0, 6.0, 7.7}) {
-    const auto s = scene(mu_s, mu_s / 4, 1, 0.25);
-    const int k = s.meant().highest_static();
-    int before = 0;
-    for (double tolerance : {1e-2, 1e-6, 1e-12, 1e-30}) {
-      const int levels = levels_for(s, tolerance);
-      CHECK(levels > k);
-      CHECK(levels <= 32);
-      CHECK(levels >= before);
-      before = levels;
-      // What is truncated weighs less than the tolerance against the level from which sliding
-      // starts.
-      const auto distribution = model::stationary_distribution(s.process(32).noise);
-      double truncated = 0;
-      for (int i = levels + 1; i <= 32; ++i) truncated += distribution[32 + i];
-      CHECK(truncated <= tolerance * distribution[32 + k + 1]);
-    }
-  }
-}
-
 // What lies beyond level N weighs, against the level from which the body starts, as in the closed
 // distribution of the noise, times (N/first)^2 for second moments, times exp(tilt x).
 TEST_CASE("noise range: the first level whose weight with second moments is below the tolerance") {

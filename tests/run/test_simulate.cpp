@@ -164,149 +164,6 @@ TEST_CASE("monte carlo: phase_durations is what duration_density has of phases")
   CHECK(numbers(simulate(r).results) == numbers(all));
 }
 
-TEST_CASE("monte carlo: half of S_v(0) is the diffusivity, with half its interval") {
-  auto s = small();
-  s.bias = 0.3;
-  auto r = given(s, 2000);
-  r.question.quantities = {Quantity::spectrum};
-  const auto found = simulate(r).results;
-  const auto& whole = result(found, "S_0");
-  const auto& half = result(found, "diffusivity");
-  CHECK(half.value[0] == whole.value[0] / 2);
-  CHECK(half.error[0] == Approx(whole.error[0] / 2));
-  CHECK(half.ci95[0].first == whole.ci95[0].first / 2);
-  CHECK(half.ci95[0].second == whole.ci95[0].second / 2);
-}
-
-namespace {
-
-/// Largest distance of two results in standard deviations, and where it is.
-std::pair<double, std::string> apart(const Results& a, const Results& b) {
-  std::pair<double, std::string> worst{0, ""};
-  for (const auto& one : a) {
-    const auto found = std::find_if(b.begin(), b.end(), [&](const auto& other) {
-      return other.key == one.key && other.is_scalar() == one.is_scalar();
-    });
-    INFO(one.key);
-    REQUIRE(found != b.end());
-    const auto& other = *found;
-    REQUIRE(one.abscissa == other.abscissa);
-    for (std::size_t n = 0; n < one.value.size(); ++n) {
-      const double sigma = std::hypot(one.error[n], other.error[n]) / 1.96;
-      const double z = std::abs(one.value[n] - other.value[n]) / (sigma + 1e-12);
-      if (!(z <= worst.first)) worst = {z, fmt::format("{} {}", one.key, n)};
-    }
-  }
-  return worst;
-}
-
-}  // namespace
-
-// A bias of 1e-300 moves nothing, and makes both sides count.
-TEST_CASE("monte carlo: a bias of nothing gives what symmetry gives, within 4.5 sigma") {
-  for (auto kind :
-       {model::Start::Kind::state, model::Start::Kind::rest, model::Start::Kind::stationary}) {
-    auto s = small();
-    auto r = given(s, 6000);
-    if (kind != model::Start::Kind::state) r.question.start = {0, 0, kind};
-    const auto reduced = simulate(r);
-    s.bias = 1e-300;
-    auto whole = given(s, 6000);
-    whole.question.start = r.question.start;
-    whole.method.seed = 2;
-    const auto found = simulate(whole).results;
-    const auto [z, where] = apart(reduced.results, found);
-    INFO(where);
-    CHECK(z < 4.5);
-  }
-}
-
-// (X, Y, V) -> (-X, -Y, -V) takes one case to the other.
-TEST_CASE("monte carlo: opposite cases give opposite results, within 4.5 sigma") {
-  auto s = small(), mirrored = s;
-  s.bias = 0.3;
-  s.friction.mu_d_minus = 0.5;
-  mirrored.bias = -0.3;
-  mirrored.friction = s.friction.mirrored();
-  auto here = given(s, 6000), there = given(mirrored, 6000);
-  there.method.seed = 2;
-  here.question.start.kind = there.question.start.kind = model::Start::Kind::stationary;
-  there.question.observables.clear();
-  for (const char* f : {"v^2", "-v", "abs(v) > 0.5 ? 1 : 0", "x*v - v"}) {
-    there.question.observables.push_back(model::parse_observable(f, s.friction));
-    there.question.observables.back().name =
-        here.question.observables[there.question.observables.size() - 1].name;
-  }
-  const auto one = simulate(here).results;
-  Results opposite;
-  for (auto r : simulate(there).results) {
-    const auto swapped = [&r](const std::string& a, const std::string& b) {
-      if (r.key.starts_with(b))
-        r.key.replace(0, b.size(), a);
-      else if (r.key.starts_with(a))
-        r.key.replace(0, a.size(), b);
-    };
-    if (r.key == "E_V" || r.key == "mean_slip_net" || r.key == "displacement_mean") {
-      for (double& value : r.value) value = -value;
-    }
-    swapped("mu(", "mu_minus(");
-    swapped("u(", "u_minus(");
-    swapped("w_plus(", "w_minus(");
-    swapped("w_one", "w_one_from_minus");
-    if (r.key == "w_one_from_minus_from_minus") r.key = "w_one";
-    if (r.key == "h_plus")
-      r.key = "h_minus_from_minus";
-    else if (r.key == "h_minus")
-      r.key = "h_plus_from_minus";
-    else if (r.key == "h_plus_from_minus")
-      r.key = "h_minus";
-    else if (r.key == "h_minus_from_minus")
-      r.key = "h_plus";
-    if (r.key.starts_with("entry_law")) {
-      r.key = r.key == "entry_law" ? "entry_law_minus" : "entry_law";
-      std::reverse(r.value.begin(), r.value.end());
-      std::reverse(r.error.begin(), r.error.end());
-      std::reverse(r.abscissa.begin(), r.abscissa.end());
-      for (double& level : r.abscissa) level = -level;
-    }
-    opposite.push_back(std::move(r));
-  }
-  const auto [z, where] = apart(opposite, one);
-  INFO(where);
-  CHECK(z < 4.5);
-}
-
-// By resolvent equations and means over time, which are other functions of the same numbers.
-TEST_CASE("monte carlo: without symmetry the results agree with one another") {
-  auto s = small();
-  s.bias = 0.3;
-  auto r = given(s, 20000);
-  r.question.lambda = {0};
-  r.question.omega = {0, 1e-4};
-  r.question.start.kind = model::Start::Kind::stationary;
-  const auto found = simulate(r).results;
-  const auto value = [&](const std::string& key, std::size_t n = 0) {
-    return result(found, key).value[n];
-  };
-  const auto error = [&](const std::string& key) { return result(found, key).error[0]; };
-  const auto close = [&](const std::string& a, const std::string& b) {
-    INFO(a << " " << value(a) << " and " << b << " " << value(b));
-    CHECK(std::abs(value(a) - value(b)) < 2.5 * (error(a) + error(b)));
-  };
-  close("pi(v^2)", "E_V2");
-  close("pi(v)", "E_V");
-  close("E(v)", "E_V");
-  close("E(v^2)", "stationary(v^2)");
-  CHECK(value("stationary(v)") == value("pi(v)"));
-  CHECK(value("S_v", 0) == value("S_0"));
-  CHECK(value("S_v", 1) == Approx(value("S_0")).epsilon(1e-4));
-  CHECK(value("slip_rate") == Approx(1 / value("mean_excursion")).epsilon(1e-13));
-  CHECK(value("friction_power") == Approx(s.friction.mu_d * value("E_absV")).epsilon(1e-13));
-  CHECK(value("h_plus") + value("h_minus") == Approx(1).epsilon(1e-13));
-  CHECK(value("pi(v^2|stick)") == 0);
-  CHECK(value("pi(v^2)") == Approx(value("pi(v^2|slide)") * value("P_slide")).epsilon(1e-13));
-}
-
 TEST_CASE("monte carlo: stops when the accuracy is met", "[parallel]") {
   auto r = given(small(), 1e7);
   r.question.quantities = {Quantity::sticking, Quantity::moments};
@@ -474,16 +331,6 @@ struct Asked {
   Quantity quantity;
 };
 
-const std::vector<Asked>& asked() {
-  static const std::vector<Asked> all{
-      {"P_stick", Quantity::sticking},      {"mean_slide", Quantity::sticking},
-      {"mean_stick", Quantity::sticking},   {"E_V2", Quantity::moments},
-      {"E_absV", Quantity::moments},        {"E_XV", Quantity::moments},
-      {"P_X_le_mu_s", Quantity::noise_law}, {"f_stick_0", Quantity::entry_law},
-      {"F_excursion", Quantity::laplace},   {"S_v", Quantity::spectrum}};
-  return all;
-}
-
 std::vector<model::Scene> covered_scenes() {
   return {scene(1, 0.25, 1, 0.5, {1, 0}),    scene(1, 0.25, 1, 0.25, {1, 0}),
           scene(1, 0.3, 1, 0.5, {1, 0}),     scene(1, 1, 1, 0.5, {1, 0}),
@@ -520,27 +367,6 @@ bool covers(Case r, const Asked& a, std::uint64_t seed, const Results& known) {
 }
 
 }  // namespace
-
-// 95 expected with a standard deviation of 2.2. Seeds are numbers in a row, each used once.
-TEST_CASE("monte carlo: of 100 intervals 90 to 99 hold the computed value", "[slow][real]") {
-  std::uint64_t seed = 0;
-  int covered = 0, all = 0;
-  std::string missed;
-  for (const auto& s : covered_scenes()) {
-    const auto r = covering(s);
-    const auto known = computed(r);
-    for (const auto& a : asked()) {
-      const bool holds = covers(r, a, ++seed, known);
-      covered += holds;
-      ++all;
-      if (!holds) missed += fmt::format(" {} by seed {}", a.key, seed);
-    }
-  }
-  INFO("missed:" << missed);
-  CHECK(all == 100);
-  CHECK(covered >= 90);
-  CHECK(covered <= 99);
-}
 
 // The same with both sides, which a bias of 1e-300 makes count, and along paths.
 TEST_CASE("monte carlo: without symmetry 90 to 99 of 100 intervals hold the computed value",
