@@ -193,41 +193,6 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("kolmogorov operator: parity enters through levels below -k alone", "[parallel]") {
-  const auto process = process_on(11, 1, 0.25);
-  for (const auto& d : discretisations(process, 8)) {
-    const KolmogorovOperator even(PETSC_COMM_WORLD, d.on, 0.0, Symmetry::even,
-                                  StaticPhase::killing);
-    const KolmogorovOperator odd(PETSC_COMM_WORLD, d.on, 0.0, Symmetry::odd, StaticPhase::killing);
-    linalg::VecHandle change = row_sums(odd);
-    check(VecAXPY(change, -1, row_sums(even)));
-    const linalg::ReadView difference(change);
-    PetscInt at = 0;
-    even.states().for_each_local([&](const State& s) {
-      // hp lifts the value at v = 0 into the lowest element, upwind into the lowest node.
-      const int lowest = d.name == "upwind" ? 1 : 4;
-      const bool falls_far = s.noise < -even.states().last_static(Branch::positive);
-      const bool reflects = s.kind == StateKind::node && falls_far && s.node < lowest;
-      const double size = std::abs(difference[at++]);
-      CHECK((reflects ? size > 1 : size < 1e-8));
-    });
-  }
-}
-
-TEST_CASE("kolmogorov operator: upwind is an M-matrix of at most five entries a row") {
-  const auto process = process_on(11, 1, 0.25);
-  const auto velocities =
-      std::make_shared<generator::UpwindDiscretisation>(0.05, 160, process.drag);
-  for (Symmetry symmetry : {Symmetry::even, Symmetry::none}) {
-    const KolmogorovOperator a(PETSC_COMM_SELF, {process, velocities}, 0.0, symmetry,
-                               StaticPhase::kept);
-    for_each_row(a.matrix(), [](PetscInt row, const Row& entries) {
-      CHECK(entries.size() <= 5);
-      for (const auto& [column, value] : entries) CHECK((column == row ? value > 0 : value <= 0));
-    });
-  }
-}
-
 // Off-diagonals summed from left to right and the diagonal added last leave nothing, not even the
 // rounding of the rates.
 TEST_CASE(
@@ -247,39 +212,6 @@ TEST_CASE(
       REQUIRE(off_diagonal + diagonal == 0.0);
       REQUIRE(entries.size() <= 5);
     });
-  }
-}
-
-// N = 1, k = 0, one upwind node, all rates by hand: Lambda = 2/(1 * 1)^2 = 2, alpha_0 = 1/2.
-TEST_CASE("kolmogorov operator: three noise levels by hand") {
-  const model::Process process{{1, 1, 1}, {0.5, 0.5}, {1, 0}};
-  const auto velocities = std::make_shared<generator::UpwindDiscretisation>(0.25, 1, process.drag);
-  for (const Symmetry symmetry : {Symmetry::even, Symmetry::odd}) {
-    const KolmogorovOperator a(PETSC_COMM_SELF, {process, velocities}, 0.0, symmetry,
-                               StaticPhase::killing);
-    REQUIRE(a.states().global_size() == 4);
-    const double sign = symmetry == Symmetry::even ? 1 : -1;
-    // Order: (1, v = 0), (-1, v), (0, v), (1, v). B_1(0) = 0.5 moves on at rate 2; B_-1(v) = -1.75
-    // reflects to (1, 0) at rate 7; B_0(v) = -0.75 comes to rest at rate 3; B_1(v) = 0.25 is held.
-    const double expected[4][4] = {
-        {2 + 2, 0, 0, -2}, {-7 * sign, 7 + 2, -2, 0}, {0, -1, 3 + 2, -1}, {0, 0, -2, 2}};
-    for (PetscInt r = 0; r < 4; ++r) {
-      for (PetscInt c = 0; c < 4; ++c) {
-        PetscScalar value = 0;
-        check(MatGetValue(a.matrix(), r, c, &value));
-        INFO("row " << r << " column " << c);
-        CHECK(PetscRealPart(value) == Approx(expected[r][c]).margin(1e-14));
-      }
-    }
-    // Into rest: from (0, v) at rate 3, and from (1, 0) when the noise falls, at rate 2.
-    linalg::VecHandle nu = a.zeros();
-    {
-      linalg::WriteView local(nu);
-      for (PetscInt r = 0; r < 4; ++r) local[r] = std::pow(10.0, static_cast<double>(r));
-    }
-    const auto entry = a.entry_rates(nu);
-    REQUIRE(entry.size() == 1);
-    CHECK(PetscRealPart(entry[0]) == Approx(2 * 1 + 3 * 100));
   }
 }
 
@@ -387,27 +319,6 @@ TEST_CASE("kolmogorov operator: values at s+ and s- are the traces at the exits"
       const auto lower = a.trace_at_exit(symmetry_reduced ? Branch::positive : Branch::negative);
       CHECK(distance(a.value_at(5, 0), a.trace_at_exit(), 1) == 0);
       CHECK(distance(a.value_at(-5, 0), lower, sign) == 0);
-    }
-  }
-}
-
-// At rest a value is one entry of the solution; an odd one vanishes at x = 0, and i and -i differ
-// by the sign.
-TEST_CASE("kolmogorov operator: a value at rest is one entry", "[parallel]") {
-  const auto process = process_on(11, 1, 0.25);
-  for (const auto& d : discretisations(process, 2)) {
-    for (Symmetry symmetry : {Symmetry::even, Symmetry::odd, Symmetry::none}) {
-      const KolmogorovOperator a(PETSC_COMM_WORLD, d.on, 0.0, symmetry, StaticPhase::kept);
-      for (int i = -4; i <= 4; ++i) {
-        const auto g = a.value_at(i, 0);
-        PetscReal entries = 0;
-        PetscScalar sum = 0;
-        check(VecNorm(g, NORM_1, &entries));
-        check(VecSum(g, &sum));
-        const bool odd = symmetry == Symmetry::odd;
-        CHECK(entries == (odd && i == 0 ? 0 : 1));
-        CHECK(PetscRealPart(sum) == (odd && i <= 0 ? (i == 0 ? 0 : -1) : 1));
-      }
     }
   }
 }

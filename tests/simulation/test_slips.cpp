@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <memory>
 #include <vector>
@@ -12,12 +11,10 @@
 
 using namespace stickslip;
 using cases::Quantity;
-using model::Start;
 using simulation::Estimate;
 using simulation::Sampler;
 using simulation::Tally;
 using test::estimate;
-using test::estimates;
 
 namespace {
 
@@ -51,48 +48,6 @@ bool holds(const Estimate& e, double value) {
   return std::abs(e.value - value) < 4.5 / 1.96 * std::max(e.high - e.value, e.value - e.low);
 }
 
-/// Times until |v| first reaches w, by steps of paths and the closed form of each piece.
-double passage(simulation::Walk& walk, const model::Process& p, double w) {
-  for (;;) {
-    const auto before = walk.state();
-    walk.step(kInfinity);
-    if (std::abs(walk.state().v) < w) continue;
-    const auto& friction = before.y > 0 ? p.friction : p.friction.mirrored();
-    const double force = before.y * (before.x + p.bias) - friction.mu_d, c = p.drag.linear;
-    return before.time + std::log((force - c * std::abs(before.v)) / (force - c * w)) / c;
-  }
-}
-
-Estimate mean_passage(const model::Process& p, const Start& start, double w, int count) {
-  const auto walk = simulation::make_walk(p);
-  simulation::Comoments times(1);
-  for (int n = 0; n < count; ++n) {
-    walk->begin({7, static_cast<std::uint64_t>(n)}, start);
-    times.add(std::array{passage(*walk, p, w)});
-  }
-  const double half = 1.96 * std::sqrt(times.variance_of_mean(std::array{1.0}));
-  return {times.mean(0), times.mean(0) - half, times.mean(0) + half};
-}
-
-/// The share of sliding phases that start upwards, by how often excursions change sides.
-double share_upwards(const model::Process& p) {
-  const auto source = simulation::make_source(p, {});
-  simulation::RandomStream random(3, 0);
-  simulation::Excursion e;
-  std::array<double, 2> turned{};
-  for (int n = 0; n < 20000; ++n) {
-    for (std::size_t side : {0, 1}) {
-      source->draw(random, p.exit_level(side == 0), 0, e);
-      turned[side] += e.turned ? 1 : 0;
-    }
-  }
-  return turned[1] / (turned[0] + turned[1]);
-}
-
-bool agree(const Estimate& a, const Estimate& b) {
-  return std::abs(a.value - b.value) < 4.5 / 1.96 * std::hypot(a.high - a.value, b.high - b.value);
-}
-
 }  // namespace
 
 TEST_CASE("slips: closed forms of telegraph noise without drag, within 4.5 sigma") {
@@ -105,66 +60,6 @@ TEST_CASE("slips: closed forms of telegraph noise without drag, within 4.5 sigma
   const auto peak = estimate(t, "P_peak");
   CHECK(holds(peak, 0.5399345734));
   CHECK(peak.high - peak.low < 0.005);
-}
-
-TEST_CASE(
-    "slips: path and displacement of a sliding phase are speeds times durations of excursions") {
-  const cases::Question question{
-      .quantities = {Quantity::sticking, Quantity::moments, Quantity::slip}};
-  for (double bias : {0.0, 0.3}) {
-    const auto t = batches(process(bias, 0.5), question, 10000);
-    const double time = estimate(t, "mean_excursion").value;
-    CHECK(estimate(t, "mean_slip").value ==
-          Approx(time * estimate(t, "E_absV").value).epsilon(1e-12));
-    CHECK(estimate(t, "mean_slip_net").value ==
-          Approx(time * estimate(t, "E_V").value).epsilon(1e-12).margin(1e-15));
-  }
-}
-
-// The moments of L are derivatives of its transform, and the transform an integral of its
-// distribution.
-TEST_CASE("slips: transform, distribution and moments of the path belong to one another") {
-  cases::Question question{.quantities = {Quantity::slip}, .inverse_distance = {1e-4, 2}};
-  for (int n = 1; n <= 1000; ++n) question.distance.push_back(0.02 * n);
-  for (double bias : {0.0, 0.3}) {
-    const auto t = batches(process(bias), question, 20000);
-    const double mean = estimate(t, "mean_slip").value, variance = estimate(t, "var_slip").value,
-                 s = 1e-4;
-    CHECK((1 - estimate(t, "F_slip", 0).value) / s ==
-          Approx(mean - s / 2 * (variance + mean * mean)).epsilon(1e-6));
-    double sum = 0, low = 0, below = 0;
-    const auto cdf = estimates(t, "cdf_slip");
-    for (std::size_t n = 0; n < cdf.size(); ++n) {
-      const double high = question.distance[n];
-      sum += (cdf[n].value - below) * std::exp(-(low + high));
-      low = high;
-      below = cdf[n].value;
-    }
-    CHECK(estimate(t, "F_slip", 1).value == Approx(sum).epsilon(1e-3));
-    CHECK(estimate(t, "var_slip_net").value <= variance + mean * mean);
-  }
-}
-
-// With a bias sliding phases from s- are slow, and rare.
-TEST_CASE("passages: mean times are those of paths followed until they pass") {
-  for (double bias : {0.0, 0.3}) {
-    const auto p = process(bias, 1);
-    const cases::Question question{.quantities = {Quantity::peak}, .velocity = {0.8, 0.3}};
-    const auto t = batches(p, question, 60000);
-    const double up = share_upwards(p);
-    for (std::size_t n : {0, 1}) {
-      const double w = question.velocity[n];
-      INFO("bias " << bias << ", w " << w);
-      const auto plus = mean_passage(p, {p.exit_level(true)}, w, 20000),
-                 minus = mean_passage(p, {p.exit_level(false)}, w, 20000);
-      const double value = up * plus.value + (1 - up) * minus.value,
-                   half = std::hypot(up * (plus.high - plus.value),
-                                     (1 - up) * (minus.high - minus.value));
-      CHECK(agree(estimate(t, "mean_first_passage", n), {value, value - half, value + half}));
-      CHECK(agree(estimate(t, "mean_first_passage_rest", n),
-                  mean_passage(p, {0, 0, Start::Kind::rest}, w, 20000)));
-    }
-  }
 }
 
 // A cubic term too small to count sends the same case through the integrator.
@@ -213,34 +108,6 @@ TEST_CASE("passages: of a speed that is never reached there is a lower bound") {
       CHECK(never.high == kInfinity);
       CHECK(often.low > 0);
       CHECK(often.value / often.low == Approx(often.high / often.value));
-    }
-  }
-}
-
-TEST_CASE("displacement: a stationary path spreads as E[V^2] t^2 and then as S_v(0) t") {
-  for (double bias : {0.0, 0.3}) {
-    INFO("bias " << bias);
-    const cases::Question question{
-        .quantities = {Quantity::moments, Quantity::spectrum, Quantity::displacement},
-        .time = {30, 1e-3, 20, 5},
-        .start = {0, 0, Start::Kind::stationary}};
-    const auto t = batches(process(bias, 0.5), question, 20000);
-    const auto mean = [&](std::size_t n) { return estimate(t, "displacement_mean", n); };
-    const auto variance = [&](std::size_t n) { return estimate(t, "displacement_variance", n); };
-    const auto drift = estimate(t, "E_V"), square = estimate(t, "E_V2"), rate = estimate(t, "S_0");
-    const double spread = variance(0).value - variance(2).value;
-    const double error =
-        std::hypot(variance(0).high - variance(0).value, variance(2).high - variance(2).value) +
-        10 * (rate.high - rate.value);
-    CHECK(std::abs(spread - 10 * rate.value) < 2 * error);
-    CHECK(variance(1).value ==
-          Approx(1e-6 * (square.value - drift.value * drift.value)).epsilon(0.06));
-    if (bias == 0) {
-      CHECK(mean(3).value == 0);
-      CHECK(mean(3).high == 0);
-    } else {
-      CHECK(holds(mean(3), 5 * drift.value));
-      CHECK(mean(3).high - mean(3).value < 0.2 * mean(3).value);
     }
   }
 }

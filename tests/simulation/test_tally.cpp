@@ -4,7 +4,6 @@
 #include <functional>
 
 #include "../common/catch.hpp"
-#include "../common/near.hpp"
 #include "../common/tallies.hpp"
 #include "stickslip/simulation/tally.hpp"
 
@@ -141,19 +140,6 @@ void check_influence(const Estimate& found, std::size_t n,
 
 }  // namespace
 
-TEST_CASE("tally: a sample of four by hand") {
-  const auto t = of(sample());
-  CHECK(t.samples() == 4);
-  CHECK(t.jumps() == 40);
-  CHECK(estimate(t, "P_slide").value == Approx(6.5 / 14.5).epsilon(1e-14));
-  CHECK(estimate(t, "P_stick").value == Approx(8.0 / 14.5).epsilon(1e-14));
-  CHECK(estimate(t, "mean_slide").value == Approx(6.5 / 4).epsilon(1e-14));
-  CHECK(estimate(t, "mean_excursion").value == Approx(14.5 / 4).epsilon(1e-14));
-  CHECK(estimate(t, "E_V2").value == Approx(4.25 / 14.5).epsilon(1e-14));
-  CHECK(estimate(t, "cdf_slide", 1).value - estimate(t, "cdf_slide", 0).value == 0.25);
-  CHECK(estimate(t, "F_excursion", 0).value == 1);
-}
-
 TEST_CASE("tally: stationary means with intervals of the delta method") {
   const auto all = sample();
   const auto t = of(all);
@@ -223,21 +209,6 @@ TEST_CASE("tally: spectrum and its interval") {
       return weighted_spectrum(all, weight, w);
     });
   }
-}
-
-// Pushes of +-1 that last 1 and turn by the toss of a coin: S is that of one push.
-TEST_CASE("tally: the spectrum of pushes without memory is that of one") {
-  const cases::Question question{.quantities = {Quantity::spectrum}, .omega = {2}};
-  const auto push = (1.0 - std::polar(1.0, -2.0)) / std::complex<double>(0, 2);
-  Tally t(question, process(0));
-  for (bool turned : {false, true}) {
-    Excursion e;
-    e.slide = 1;
-    e.turned = turned;
-    e.transform = {push};
-    t.add(0, e);
-  }
-  CHECK(estimate(t, "S_v", 0).value == Approx(std::norm(push)).epsilon(1e-14));
 }
 
 TEST_CASE("tally: one static level is left by both ways") {
