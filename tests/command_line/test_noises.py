@@ -5,7 +5,6 @@ import math
 import unittest
 
 import h5py
-import numpy
 
 from running import Case, run
 
@@ -134,16 +133,12 @@ class Noises(Case):
         for key, value in {"P_stick": 0.057558, "mean_slide": 0.330008, "E_V2": 0.0337518, "E_XV": 0.1310128}.items():
             found = ground["results"][key]
             self.assertLess(abs(found["value"] - value), found["error"] + 4e-5 * value, key)
-        loose = ("-accuracy", "0.03", "-quantities", "sticking,moments,noise_spectrum", "-omega", "0,1")
-        for terms, named in (("1,0.5,1", self.BAND), ("1.44,2", ("-tau", "0.5", "-noise_deviation", "1.2", "-delta", "0")),
-                             ("1,1; 0.64,5", ("-noise", "gaussian+ou", "-covariance", "1,1", "-tau", "0.2",
-                                              "-noise_deviation", "0.8", "-delta", "0"))):
-            by_terms, by_name = (self.summary(*noise, "-mu_d", "0.25", *loose)["results"] for noise in (
-                ("-noise", "gaussian", "-covariance", terms), named))
-            for key, result in by_terms.items():
-                pairs = zip(numpy.atleast_1d(by_name[key]["value"]), numpy.atleast_1d(result["value"]))
-                for found, right in pairs:
-                    self.assert_close(found, right, 1e-6)
+        by_terms, by_name = (self.summary(*noise, "-mu_d", "0.25", "-accuracy", "0.03", "-quantities", "sticking,moments")["results"]
+                             for noise in (("-noise", "gaussian", "-covariance", "1,1; 0.64,5"),
+                                           ("-noise", "gaussian+ou", "-covariance", "1,1", "-tau", "0.2",
+                                            "-noise_deviation", "0.8", "-delta", "0")))
+        for key, result in by_terms.items():
+            self.assert_close(by_name[key]["value"], result["value"], 1e-6)
 
     def test_gaussian_noises_have_no_step(self):
         self.refuse(*self.BAND, "-delta", "1", message=("-delta = 1", "a step between levels", "lattice(delta)"))

@@ -22,6 +22,9 @@ class Scenes(Case):
                 # Names of files within scenes count from the folder of the sources.
                 s = self.summary("-options_file", file, *more, folder=SOURCES)
                 self.assertEqual(s["warnings"], [])
+                for line in self.printed.splitlines():  # a terminal of 100 columns
+                    self.assertLessEqual(len(line), 100, line)
+                    self.assertEqual(line, line.rstrip())
                 for run in s.get("runs", [s]):
                     self.assertEqual(run["warnings"], [])
                     self.assertTrue(run["accuracy"]["reached"])

@@ -3,7 +3,7 @@
 import re
 import unittest
 
-from running import SOURCES, Case
+from running import Case
 
 SMALL = ("-mu_d", "0.25", "-delta", "0.5")
 GRIDS = ("-lambda", "0.5,2", "-omega", "0.1,1", "-time", "0.5,1", "-distance", "0.1,1", "-inverse_distance", "1",
@@ -18,12 +18,6 @@ class Width(Case):
         for line in self.run_ok(*options, status=status, **how).stdout.splitlines():
             self.assertLessEqual(len(line), 100, line)
             self.assertEqual(line, line.rstrip())
-
-    def test_options_files(self):
-        for name in ("directions", "given_force", "inclined_plane", "measured_noise", "quickstart", "ratchet",
-                     "relaxation", "sensitivity", "slope", "spectrum", "stribeck", "sweep", "telegraph", "white_noise"):
-            with self.subTest(file=name):
-                self.assert_narrow("-options_file", SOURCES / "options" / f"{name}.opts", folder=SOURCES)
 
     def test_schemes_and_routes(self):
         for options in (("-scheme", "upwind", "-accuracy", "1e-2"), ("-route", "lambda"), ("-route", "null_vector"),
