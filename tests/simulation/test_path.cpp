@@ -185,7 +185,7 @@ TEST_CASE("path: a stationary start has the stationary distribution within 4 sig
   using cases::Quantity;
   simulation::Sampler sampler({.quantities = {Quantity::sticking, Quantity::moments}}, p);
   const auto& known = sampler.batch(1, 0, 50000);
-  constexpr int count = 1000;
+  constexpr int count = 400;
   double square = 0, fourth = 0, resting = 0;
   for (std::uint64_t seed = 1; seed <= count; ++seed) {
     const auto path = simulate_path(p, {0, 0, model::Start::Kind::stationary}, 0.01, seed);
