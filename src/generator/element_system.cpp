@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <complex>
 #include <cstddef>
-#include <iterator>
 #include <utility>
 
 namespace stickslip::generator {
@@ -93,11 +92,6 @@ void LinearSteps<Scalar>::solve(Factors a, std::size_t at) {
 template <class Scalar>
 void LinearSteps<Scalar>::solve(Tridiagonal a, std::size_t at) {
   steps_.emplace_back(Solve<Tridiagonal>{std::move(a), at});
-}
-
-template <class Scalar>
-void LinearSteps<Scalar>::append(LinearSteps other) {
-  std::move(other.steps_.begin(), other.steps_.end(), std::back_inserter(steps_));
 }
 
 template <class Scalar>

@@ -111,18 +111,6 @@ void require_occupation(Vec nu, const model::Process& process) {
 
 KolmogorovOperator::KolmogorovOperator(MPI_Comm comm, const Discretisation& discretisation,
                                        Shift<PetscScalar> shift, Symmetry symmetry,
-                                       StaticPhase static_phase)
-    : KolmogorovOperator(comm, discretisation, shift, symmetry, static_phase, std::nullopt) {}
-
-KolmogorovOperator KolmogorovOperator::derivative(MPI_Comm comm,
-                                                  const Discretisation& discretisation,
-                                                  Symmetry symmetry,
-                                                  const model::Derivative& theta) {
-  return {comm, discretisation, {}, symmetry, StaticPhase::killing, theta};
-}
-
-KolmogorovOperator::KolmogorovOperator(MPI_Comm comm, const Discretisation& discretisation,
-                                       Shift<PetscScalar> shift, Symmetry symmetry,
                                        StaticPhase static_phase,
                                        std::optional<model::Derivative> derivative)
     : data_(std::make_shared<MatrixData>(MatrixData{
@@ -190,24 +178,25 @@ void KolmogorovOperator::kill_in_one_state() {
       std::lower_bound(speeds.begin(), speeds.end() - 1, std::min(speed, velocities->v_max() / 2));
   const PetscInt state =
       states().index({StateKind::node, branch, n, static_cast<int>(node - speeds.begin())});
-  const PetscInt begin = states().local_begin(), end = begin + states().local_size();
-  if (state >= begin && state < end) {
-    check(MatSetValue(matrix_, state, state, chain.rate(), ADD_VALUES));
-  }
+  if (states().owns(state)) check(MatSetValue(matrix_, state, state, chain.rate(), ADD_VALUES));
   check(MatAssemblyBegin(matrix_, MAT_FINAL_ASSEMBLY));
   check(MatAssemblyEnd(matrix_, MAT_FINAL_ASSEMBLY));
   killing_state_ = state;
 }
 
-linalg::VecHandle KolmogorovOperator::value_in_that_state() const {
+template <class Fill>
+linalg::VecHandle KolmogorovOperator::functional(Fill fill) const {
   linalg::VecHandle g = zeros();
-  const PetscInt state = killing_state_.value(), begin = states().local_begin();
-  if (state >= begin && state < begin + states().local_size()) {
-    check(VecSetValue(g, state, 1, INSERT_VALUES));
-  }
+  fill([this, &g](PetscInt state, double weight) {
+    if (states().owns(state)) check(VecSetValue(g, state, weight, ADD_VALUES));
+  });
   check(VecAssemblyBegin(g));
   check(VecAssemblyEnd(g));
   return g;
+}
+
+linalg::VecHandle KolmogorovOperator::value_in_that_state() const {
+  return functional([this](const auto& add) { add(killing_state_.value(), 1); });
 }
 
 linalg::VecHandle KolmogorovOperator::zeros() const {
@@ -221,18 +210,13 @@ linalg::VecHandle KolmogorovOperator::trace_at_exit(Branch branch) const {
 }
 
 linalg::VecHandle KolmogorovOperator::trace_at_start(int level) const {
-  linalg::VecHandle g = zeros();
-  const PetscInt begin = states().local_begin(), end = begin + states().local_size();
-  for (const auto& [index, weight] : traces_.at(level)) {
-    if (index < begin || index >= end) continue;
-    check(VecSetValue(g, index, weight, INSERT_VALUES));
-  }
-  check(VecAssemblyBegin(g));
-  check(VecAssemblyEnd(g));
-  return g;
+  return functional([&](const auto& add) {
+    for (const auto& [index, weight] : traces_.at(level)) add(index, weight);
+  });
 }
 
-void KolmogorovOperator::add_value_at(int i, double v, double weight, Vec functional) const {
+template <class Add>
+void KolmogorovOperator::add_value_at(int i, double v, double weight, const Add& add) const {
   const auto& [process, noise, velocities] = discretisation();
   const int lowest = process.lowest_static();
   const bool at_rest = v == 0 && process.sticks(i);
@@ -240,10 +224,8 @@ void KolmogorovOperator::add_value_at(int i, double v, double weight, Vec functi
   const bool mirrored = below && states().symmetry_reduced();
   const double sign = mirrored && states().symmetry() == Symmetry::odd ? -weight : weight;
   const Branch branch = below && !mirrored ? Branch::negative : Branch::positive;
-  const PetscInt begin = states().local_begin(), end = begin + states().local_size();
-  const auto add = [&](const State& state, double share) {
-    const PetscInt index = states().index(state);
-    if (index >= begin && index < end) check(VecSetValue(functional, index, share, ADD_VALUES));
+  const auto add_state = [&](const State& state, double share) {
+    add(states().index(state), share);
   };
   // A level as a combination of noise nodes, of those as combinations of velocity nodes.
   const auto& group =
@@ -252,37 +234,32 @@ void KolmogorovOperator::add_value_at(int i, double v, double weight, Vec functi
   for (int l = 0; !at_rest && l < group.count; ++l) {
     const int n = group.begin + l;
     if (v == 0 && states().has_origin(branch, n)) {
-      add({StateKind::origin, branch, n, 0}, sign);
+      add_state({StateKind::origin, branch, n, 0}, sign);
       continue;
     }
     for (const auto& e : v == 0 ? velocities->trace_at_zero() : velocities->value_at(std::abs(v))) {
-      add({StateKind::node, branch, n, e.node}, sign * shares[l] * e.value);
+      add_state({StateKind::node, branch, n, e.node}, sign * shares[l] * e.value);
     }
   }
   if (at_rest) {
     const int kept = states().symmetry_reduced() ? std::abs(i) : i;
-    if (states().has_static_state(kept))
-      add({StateKind::static_phase, Branch::positive, kept, 0}, sign);
+    if (states().has_static_state(kept)) {
+      add_state({StateKind::static_phase, Branch::positive, kept, 0}, sign);
+    }
   }
 }
 
 linalg::VecHandle KolmogorovOperator::value_at(int i, double v) const {
-  linalg::VecHandle g = zeros();
-  add_value_at(i, v, 1, g);
-  check(VecAssemblyBegin(g));
-  check(VecAssemblyEnd(g));
-  return g;
+  return functional([&](const auto& add) { add_value_at(i, v, 1, add); });
 }
 
 linalg::VecHandle KolmogorovOperator::mean_at_zero(const std::vector<double>& p) const {
-  linalg::VecHandle g = zeros();
   const auto& chain = discretisation().process.noise;
-  for (int i = chain.lowest(); i <= chain.highest(); ++i) {
-    add_value_at(i, 0, p[i - chain.lowest()], g);
-  }
-  check(VecAssemblyBegin(g));
-  check(VecAssemblyEnd(g));
-  return g;
+  return functional([&](const auto& add) {
+    for (int i = chain.lowest(); i <= chain.highest(); ++i) {
+      add_value_at(i, 0, p[i - chain.lowest()], add);
+    }
+  });
 }
 
 std::vector<PetscScalar> KolmogorovOperator::entry_rates(Vec nu) const {
@@ -291,8 +268,7 @@ std::vector<PetscScalar> KolmogorovOperator::entry_rates(Vec nu) const {
   std::vector<PetscScalar> rates(static_cast<std::size_t>(count), 0.0);
   const linalg::ReadView local(nu);
   for (const auto& c : static_coupling_) rates[c.level - lowest] += c.rate * local[c.row];
-  MPI_Allreduce(MPI_IN_PLACE, rates.data(), static_cast<int>(rates.size()), MPIU_SCALAR, MPIU_SUM,
-                states().comm());
+  linalg::sum_over_ranks(states().comm(), rates);
   return rates;
 }
 
@@ -334,11 +310,7 @@ linalg::VecHandle KolmogorovOperator::square_field(Vec u, const std::vector<doub
 }
 
 linalg::VecHandle KolmogorovOperator::values(const Observable& f, bool averaged) const {
-  linalg::VecHandle result = zeros();
-  linalg::WriteView local(result);
   const model::NoiseChain& chain = discretisation().process.noise;
-  const VelocityDiscretisation& velocities = *discretisation().velocities;
-  PetscInt at = 0;
   std::map<std::pair<double, double>, std::vector<double>> means;  // by y and v
   const auto value = [&](int i, double y, double v) {
     if (!averaged) return f(chain.noise(i), y, v);
@@ -346,19 +318,14 @@ linalg::VecHandle KolmogorovOperator::values(const Observable& f, bool averaged)
     if (known.empty()) known = chain.means([&](double x) { return f(x, y, v); });
     return known[i - chain.lowest()];
   };
-  states().for_each_local([&](const State& s) {
+  return by_state([&](const State& s) {
+    if (s.kind == StateKind::static_phase) return value(s.noise, 0, 0);
     const int sign = s.branch == Branch::positive ? 1 : -1;
-    if (s.kind == StateKind::static_phase) {
-      local[at++] = value(s.noise, 0, 0);
-      return;
-    }
-    double v = 0;
-    if (s.kind == StateKind::node) v = sign * velocities.nodes()[s.node];
-    if (s.kind == StateKind::holding) v = sign * velocities.v_max();
-    local[at++] =
-        nodes_along(s.branch).projected(s.noise, [&](int i) { return value(sign * i, sign, v); });
+    const double speed = speed_of(s, *discretisation().velocities),
+                 v = speed > 0 ? sign * speed : 0;
+    return nodes_along(s.branch).projected(s.noise,
+                                           [&](int i) { return value(sign * i, sign, v); });
   });
-  return result;
 }
 
 linalg::VecHandle KolmogorovOperator::overlooked(const Observable& f) const {

@@ -29,34 +29,13 @@ using linalg::check;
 
 double scalar_bytes() { return linalg::complex_scalars() ? 16 : 8; }
 
-// How many noise nodes do not rise where drag adds `drag` to their speeds.
-double falling_nodes(const model::Process& process, const Nodes* noise, double drag) {
-  const int lowest = noise == nullptr ? process.noise.lowest() : noise->first();
-  const int count = noise == nullptr ? process.noise.count() : noise->count();
-  int below = lowest, above = lowest + count;  // the first that rises is in [below, above]
-  while (below < above) {
-    const int n = below + (above - below) / 2;
-    const double x = noise == nullptr ? process.noise.level(n) : noise->x(n);
-    if (process.net_force_at(x) + drag > 0) {
-      above = n;
-    } else {
-      below = n + 1;
-    }
-  }
-  return static_cast<double>(below) - lowest;
-}
-
 // Nodes of a group, and levels through which others jump to it.
 using GroupSize = std::pair<int, int>;
 
 // How many groups have which size.
-std::map<GroupSize, double> group_sizes(const model::Process& process, const Nodes* noise) {
-  if (noise == nullptr && process.noise.neighbours_only()) {
-    return {{{1, 1}, static_cast<double>(process.noise.count())}};
-  }
-  if (noise == nullptr) return group_sizes(process, std::make_unique<Nodes>(process).get());
+std::map<GroupSize, double> group_sizes(const Nodes& noise) {
   std::map<GroupSize, double> sizes;
-  for (const auto& group : noise->groups()) {
+  for (const auto& group : noise.groups()) {
     const std::size_t border = std::max(group.at_first().size(), group.at_last().size());
     sizes[{group.count, static_cast<int>(border) / group.count}] += 1;
   }
@@ -104,14 +83,18 @@ bool branches_share_factors(const model::Process& process, bool all_levels,
 
 // The blocks and couplings of groups inside of the elements, and those between elements.
 FactorCost elimination_cost(const model::Process& process, const HpDiscretisation& velocities,
-                            const Nodes* noise, int ranks) {
-  const auto sizes = group_sizes(process, noise);
-  const double all = noise == nullptr ? process.noise.count() : noise->count();
+                            const Nodes& noise, int ranks) {
+  const auto sizes = group_sizes(noise);
+  std::vector<double> net_force;
+  for (int n = noise.first(); n <= noise.last(); ++n) {
+    net_force.push_back(process.net_force_at(noise.x(n)));
+  }
+  const double all = noise.count();
   double inside = 0, between = 0, operations = 0;
-  double inner = falling_nodes(process, noise, velocities.drag_at_end(0));
+  double inner = first_rising(net_force, velocities.drag_at_end(0));
   for (int e = 0; e < velocities.elements(); ++e) {
     const double q = velocities.element(e).reference->size;
-    const double outer = falling_nodes(process, noise, velocities.drag_at_end(e + 1));
+    const double outer = first_rising(net_force, velocities.drag_at_end(e + 1));
     for (const auto& [size, groups] : sizes) {
       const auto& [nodes, border] = size;
       const double n = nodes * q, b = border * q;
@@ -133,7 +116,7 @@ FactorCost elimination_cost(const Discretisation& discretisation, bool symmetry_
                             int ranks) {
   const auto of = [&](const model::Process& along, const Nodes& nodes,
                       const VelocityDiscretisation& side) {
-    return elimination_cost(along, dynamic_cast<const HpDiscretisation&>(side), &nodes, ranks);
+    return elimination_cost(along, dynamic_cast<const HpDiscretisation&>(side), nodes, ranks);
   };
   const auto& [process, noise, velocities] = discretisation;
   FactorCost cost = of(process, *noise, *velocities);
@@ -154,36 +137,18 @@ FactorCost sparse_cost(Factors factors, Scheme scheme, double unknowns, double n
   return {entries, scalar_bytes() / 8 * bytes_an_entry * entries, operations};
 }
 
-namespace {
-
-template <class Make>
-KolmogorovOperator entered(linalg::SolverStatistics& statistics, Make make) {
+KolmogorovOperator assemble(MPI_Comm comm, const Discretisation& discretisation,
+                            Shift<PetscScalar> shift, Symmetry symmetry, StaticPhase static_phase,
+                            linalg::SolverStatistics& statistics,
+                            std::optional<model::Derivative> derivative) {
   const linalg::PhaseTimer timer("assembly", statistics.assembly_seconds);
-  KolmogorovOperator a = make();
+  KolmogorovOperator a(comm, discretisation, shift, symmetry, static_phase, derivative);
   linalg::SolverStatistics made;
   made.assemblies = 1;
   made.unknowns = a.states().global_size();
   made.nonzeros = a.nonzeros();
   statistics += made;
   return a;
-}
-
-}  // namespace
-
-KolmogorovOperator assemble(MPI_Comm comm, const Discretisation& discretisation,
-                            Shift<PetscScalar> shift, Symmetry symmetry, StaticPhase static_phase,
-                            linalg::SolverStatistics& statistics) {
-  return entered(statistics, [&] {
-    return KolmogorovOperator(comm, discretisation, shift, symmetry, static_phase);
-  });
-}
-
-KolmogorovOperator assemble_derivative(MPI_Comm comm, const Discretisation& discretisation,
-                                       Symmetry symmetry, const model::Derivative& theta,
-                                       linalg::SolverStatistics& statistics) {
-  return entered(statistics, [&] {
-    return KolmogorovOperator::derivative(comm, discretisation, symmetry, theta);
-  });
 }
 
 namespace {
@@ -195,11 +160,8 @@ const char* pc_type_of(const KolmogorovOperator& a) {
 
 }  // namespace
 
-std::unique_ptr<linalg::Factorization> factorization(const KolmogorovOperator& a,
-                                                     linalg::SolverStatistics& statistics) {
-  return std::make_unique<linalg::Factorization>(a.matrix(), kSlidePrefix, statistics,
-                                                 pc_type_of(a));
-}
+System::System(KolmogorovOperator a, linalg::SolverStatistics& statistics)
+    : a_(std::move(a)), factors_(a_.matrix(), kSlidePrefix, statistics, pc_type_of(a_)) {}
 
 KolmogorovOperator Systems::assembled(const SystemKey& key) {
   const auto of = [&](const Discretisation& discretisation) {
@@ -245,29 +207,14 @@ double norm(const ComplexVector& x) {
   return std::hypot(real, imaginary);
 }
 
-}  // namespace
+// The factors of a ComplexSolver, of one kind and of the other.
 
-std::complex<double> dot(Vec c, const ComplexVector& x) {
-  return {linalg::dot(c, x.real), linalg::dot(c, x.imaginary)};
-}
-
-class ComplexSolver::Factors {
- public:
-  virtual ~Factors() = default;
-  virtual void solve(const ComplexVector& b, const ComplexVector& x, bool transposed) = 0;
-
- protected:
-  Factors() = default;
-  Factors(const Factors&) = delete;
-  Factors& operator=(const Factors&) = delete;
-};
-
-class ComplexSolver::ByElements final : public Factors {
+class ByElements {
  public:
   ByElements(const KolmogorovOperator& a, const Shift<Complex>& shift)
       : factors_(a.matrix(), data_of(a.matrix()), shift), vectors_(a.matrix()) {}
 
-  void solve(const ComplexVector& b, const ComplexVector& x, bool transposed) override {
+  void solve(const ComplexVector& b, const ComplexVector& x, bool transposed) const {
     const auto real = vectors_.gathered(b.real), imaginary = vectors_.gathered(b.imaginary);
     linalg::Matrix<Complex> all(static_cast<int>(real.size()), 1);
     for (std::size_t n = 0; n < real.size(); ++n) {
@@ -284,7 +231,7 @@ class ComplexSolver::ByElements final : public Factors {
 };
 
 /// The real and then the imaginary parts of each rank.
-class ComplexSolver::InRealForm final : public Factors {
+class InRealForm {
  public:
   InRealForm(const KolmogorovOperator& a, const ComplexVector& diagonal,
              linalg::SolverStatistics& statistics) {
@@ -315,7 +262,7 @@ class ComplexSolver::InRealForm final : public Factors {
   }
 
   // The transposed real form is that of the transposed matrix for the conjugate of d.
-  void solve(const ComplexVector& b, const ComplexVector& x, bool transposed) override {
+  void solve(const ComplexVector& b, const ComplexVector& x, bool transposed) const {
     const double sign = transposed ? -1 : 1;
     linalg::VecHandle all, solved;
     check(MatCreateVecs(matrix_, all.out(), solved.out()));
@@ -363,28 +310,33 @@ class ComplexSolver::InRealForm final : public Factors {
   std::unique_ptr<linalg::Factorization> factors_;
 };
 
+}  // namespace
+
+std::complex<double> dot(Vec c, const ComplexVector& x) {
+  return {linalg::dot(c, x.real), linalg::dot(c, x.imaginary)};
+}
+
 ComplexSolver::ComplexSolver(const KolmogorovOperator& a, Shift<Complex> shift,
                              linalg::SolverStatistics& statistics)
-    : a_(a), diagonal_{a.zeros(), a.zeros()}, statistics_(statistics) {
-  {
-    linalg::WriteView real(diagonal_.real), imaginary(diagonal_.imaginary);
-    PetscInt at = 0;
-    a.states().for_each_local([&](const State& state) {
-      const Complex d = shift.at(velocity_of(state, *a.discretisation().velocities));
-      real[at] = d.real();
-      imaginary[at++] = d.imag();
-    });
-  }
+    : a_(a), statistics_(statistics) {
+  const auto d = [&](const State& state) {
+    return shift.at(velocity_of(state, *a.discretisation().velocities));
+  };
+  diagonal_ = {a.by_state([&](const State& state) { return d(state).real(); }),
+               a.by_state([&](const State& state) { return d(state).imag(); })};
+  const auto solve_by = [](const auto& factors) {
+    return [factors](const ComplexVector& b, const ComplexVector& x, bool transposed) {
+      factors->solve(b, x, transposed);
+    };
+  };
   if (!serves_elements(a)) {
-    factors_ = std::make_unique<InRealForm>(a, diagonal_, statistics);
+    factors_ = solve_by(std::make_shared<InRealForm>(a, diagonal_, statistics));
     return;
   }
   const linalg::PhaseTimer timer("factorisation", statistics_.factorization_seconds);
-  factors_ = std::make_unique<ByElements>(a, shift);
+  factors_ = solve_by(std::make_shared<ByElements>(a, shift));
   ++statistics_.factorizations_complex;
 }
-
-ComplexSolver::~ComplexSolver() = default;
 
 ComplexVector ComplexSolver::residual(const ComplexVector& b, const ComplexVector& x,
                                       bool transposed) const {
@@ -410,7 +362,7 @@ ComplexVector ComplexSolver::residual(const ComplexVector& b, const ComplexVecto
 ComplexVector ComplexSolver::solve_once(const ComplexVector& b, bool transposed) {
   const linalg::PhaseTimer timer("solve", statistics_.solve_seconds);
   ComplexVector x{a_.zeros(), a_.zeros()};
-  factors_->solve(b, x, transposed);
+  factors_(b, x, transposed);
   ++statistics_.solves;
   return x;
 }
@@ -418,7 +370,7 @@ ComplexVector ComplexSolver::solve_once(const ComplexVector& b, bool transposed)
 ComplexSolver::Solution ComplexSolver::solve(const ComplexVector& b, bool transposed) {
   Solution s{solve_once(b, transposed), {a_.zeros(), a_.zeros()}};
   const linalg::PhaseTimer timer("solve", statistics_.solve_seconds);
-  factors_->solve(residual(b, s.x, transposed), s.correction, transposed);
+  factors_(residual(b, s.x, transposed), s.correction, transposed);
   check(VecAXPY(s.x.real, 1, s.correction.real));
   check(VecAXPY(s.x.imaginary, 1, s.correction.imaginary));
   ++statistics_.corrections;

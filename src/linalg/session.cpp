@@ -395,11 +395,6 @@ int ranks(MPI_Comm comm) {
   return value;
 }
 
-void sum_over_ranks(MPI_Comm comm, std::vector<double>& values) {
-  MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_DOUBLE, MPI_SUM,
-                comm);
-}
-
 std::string first_text(MPI_Comm comm, std::string text) {
   const int all = ranks(comm);
   int first = text.empty() ? all : rank(comm);

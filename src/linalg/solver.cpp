@@ -305,8 +305,12 @@ KspHandle linear_solver(Mat matrix, const std::string& prefix, PCType pc_type) {
   return ksp;
 }
 
+namespace {
+
+// Whether the PC is of a type of this program: it needs the matrix of an operator.
 bool is_own(KSP ksp) { return analysis_of(ksp) != nullptr; }
 
+// For all of `b` at once, where a KSP is nothing but a PC of this program: others return false.
 bool solve_together(KSP ksp, std::span<const Vec> b, std::span<const Vec> x, bool transposed) {
   PetscBool alone = PETSC_FALSE;
   check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(ksp), KSPPREONLY, &alone));
@@ -317,14 +321,7 @@ bool solve_together(KSP ksp, std::span<const Vec> b, std::span<const Vec> x, boo
   return true;
 }
 
-void factor(KspHandle& ksp, Mat matrix, const std::string& prefix) {
-  const auto amf = default_ordering(prefix);
-  const auto owner = reinterpret_cast<PetscObject>(static_cast<KSP>(ksp));
-  check(PetscObjectViewFromOptions(reinterpret_cast<PetscObject>(matrix), owner, "-mat_view"));
-  check(KSPSetUp(ksp));
-  if (lacks_workspace(ksp)) ksp = with_more_workspace(ksp, matrix, prefix);
-  require_factored(ksp, prefix);
-}
+}  // namespace
 
 void require_factored(KSP ksp, const std::string& prefix) {
   const PCFailedReason reason = failure_of(ksp);
@@ -346,17 +343,6 @@ void record_factors(KSP ksp, SolverStatistics& statistics) {
   statistics += seen;
 }
 
-Analysis analyse(KSP ksp, Mat matrix, const std::string& prefix) {
-  if (!uses_mumps(ksp)) return own_analysis(ksp);
-  const auto amf = default_ordering(prefix);
-  check(PCFactorSetUpMatSolverType(preconditioner_of(ksp)));
-  MatFactorInfo info{};
-  check(MatFactorInfoInitialize(&info));
-  check(MatLUFactorSymbolic(factor_of(ksp), matrix, nullptr, nullptr, &info));
-  constexpr PetscInt entries = 3, megabytes = 17;
-  return counted_by_mumps(ksp, entries, megabytes);
-}
-
 namespace {
 
 constexpr double kBackwardErrorLimit = 1e-12;
@@ -371,15 +357,16 @@ Factorization::Factorization(Mat matrix, const std::string& prefix, SolverStatis
   check(PetscObjectReference(reinterpret_cast<PetscObject>(matrix)));
   matrix_ = MatHandle(matrix);
   ksp_ = linear_solver(matrix_, prefix_, pc_type);
-  factor();
-}
-
-void Factorization::factor() {
   double total = 0, symbolic = 0;
   {
     const PhaseTimer timer("factorisation", total);
     const EventTimer analysis("MatLUFactorSym");
-    linalg::factor(ksp_, matrix_, prefix_);
+    const auto amf = default_ordering(prefix_);
+    const auto owner = reinterpret_cast<PetscObject>(static_cast<KSP>(ksp_));
+    check(PetscObjectViewFromOptions(reinterpret_cast<PetscObject>(matrix), owner, "-mat_view"));
+    check(KSPSetUp(ksp_));
+    if (lacks_workspace(ksp_)) ksp_ = with_more_workspace(ksp_, matrix_, prefix_);
+    require_factored(ksp_, prefix_);
     symbolic = analysis.seconds();
   }
   statistics_.analysis_seconds += symbolic;
@@ -500,7 +487,14 @@ Analysis Factorization::analyse(Mat matrix, const std::string& prefix, SolverSta
                                 PCType pc_type) {
   const PhaseTimer timer("analysis", statistics.analysis_seconds);
   const KspHandle ksp = linear_solver(matrix, prefix, pc_type);
-  return linalg::analyse(ksp, matrix, prefix);
+  if (!uses_mumps(ksp)) return own_analysis(ksp);
+  const auto amf = default_ordering(prefix);
+  check(PCFactorSetUpMatSolverType(preconditioner_of(ksp)));
+  MatFactorInfo info{};
+  check(MatFactorInfoInitialize(&info));
+  check(MatLUFactorSymbolic(factor_of(ksp), matrix, nullptr, nullptr, &info));
+  constexpr PetscInt entries = 3, megabytes = 17;
+  return counted_by_mumps(ksp, entries, megabytes);
 }
 
 namespace {

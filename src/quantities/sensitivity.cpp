@@ -89,8 +89,9 @@ Sensitivity::Sensitivity(generator::Systems& systems, const StationaryDistributi
   for (int start : distribution.starts().levels) exits_.push_back(chain.exit_transform_to(start));
   const Symmetry symmetry = generator::symmetry_of(systems.process());
   for (const auto& theta : parameters_) {
-    changes_.push_back(generator::assemble_derivative(systems.comm(), systems.discretisation(),
-                                                      symmetry, theta, systems.statistics()));
+    changes_.push_back(generator::assemble(systems.comm(), systems.discretisation(), {}, symmetry,
+                                           generator::StaticPhase::killing, systems.statistics(),
+                                           theta));
   }
   slide_ = sliding_mean([](double, double, double) { return 1.0; });
   stick_ = sticking_mean();

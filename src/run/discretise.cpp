@@ -247,15 +247,15 @@ namespace {
 generator::FactorCost factor_cost(const model::Scene& scene, const Resolution& r,
                                   cases::Factors factors, int ranks) {
   const auto n = static_cast<double>(unknowns(scene, r));
-  const auto noise = static_cast<double>(r.noise_nodes());
   constexpr double countable = 1e8;  // beyond, the matrix alone fills a machine
   if (factors != cases::Factors::elements || n > countable) {
-    return generator::sparse_cost(factors, r.scheme, n, noise);
+    return generator::sparse_cost(factors, r.scheme, n, static_cast<double>(r.noise_nodes()));
   }
   const auto velocities = velocities_of(scene, r);
   const auto process = scene.process(r.levels);
+  const auto noise = r.noise ? r.noise : std::make_shared<const generator::Nodes>(process);
   const auto cost = generator::elimination_cost(
-      process, dynamic_cast<const generator::HpDiscretisation&>(*velocities), r.noise.get(), ranks);
+      process, dynamic_cast<const generator::HpDiscretisation&>(*velocities), *noise, ranks);
   const bool alike = generator::branches_share_factors(process, r.noise == nullptr, *velocities);
   const int branches = alike ? 1 : r.branches;
   return {branches * cost.entries, branches * cost.bytes, branches * cost.operations};

@@ -370,8 +370,8 @@ TEST_CASE("kolmogorov operator: derivatives are limits of differences", "[parall
     const Step& step = steps[place];
     REQUIRE(parameters[place].option == step.parameter);
     for (bool hp : {true, false}) {
-      const auto derivative = KolmogorovOperator::derivative(PETSC_COMM_WORLD, on(process, hp),
-                                                             Symmetry::even, parameters[place]);
+      const KolmogorovOperator derivative(PETSC_COMM_WORLD, on(process, hp), {}, Symmetry::even,
+                                          StaticPhase::killing, parameters[place]);
       const auto at = [&](const model::Process& p) {
         return KolmogorovOperator(PETSC_COMM_WORLD, on(p, hp), 0, Symmetry::even,
                                   StaticPhase::killing);

@@ -29,9 +29,7 @@ LinearSteps every_kind() {
   steps.solve(std::move(chain), 2);
   steps.contract(std::vector{0.5, -2.0}, 2, 2, 0);
   steps.spread(std::vector{1.5, 0.25, 3.0}, 1, 0, 2);
-  LinearSteps more;
-  more.add(matrix(1, 2, 1.5), 0, 5);
-  steps.append(std::move(more));
+  steps.add(matrix(1, 2, 1.5), 0, 5);
   return steps;
 }
 

@@ -56,8 +56,6 @@ class LinearSteps {
   /// w[at ...] <- A^-1 w[at ...].
   void solve(Factors a, std::size_t at);
   void solve(Tridiagonal a, std::size_t at);
-  /// The steps of another map after those of this one.
-  void append(LinearSteps other);
 
   /// w <- M w, or M^T w. Factors are read once for all lists. O(entries lists).
   void run(Lists w, bool transposed) const;

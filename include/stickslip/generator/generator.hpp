@@ -71,18 +71,13 @@ struct TopCoupling {
 /// the velocity discretisation kills at its top, u = 0 there.
 class KolmogorovOperator {
  public:
-  /// Assembles the local rows. The matrix lives as long as the operator. Collective.
-  /// O(local nonzeros).
+  /// Assembles the local rows. The matrix lives as long as the operator. By a parameter theta
+  /// dA/dtheta, without shift and for StaticPhase::killing: entry_rates and from_static are those
+  /// of -dA_us/dtheta. Elements, nodes and upwind directions stay as they are: what is projected is
+  /// the derivative of the process. Collective. O(local nonzeros).
   KolmogorovOperator(MPI_Comm comm, const Discretisation& discretisation, Shift<PetscScalar> shift,
-                     Symmetry symmetry, StaticPhase static_phase);
-
-  /// dA/dtheta with all members, for StaticPhase::killing: entry_rates and from_static are those of
-  /// -dA_us/dtheta. Elements, nodes and upwind directions stay as they are: what is projected is
-  /// the derivative of the process. Collective.
-  [[nodiscard]] static KolmogorovOperator derivative(MPI_Comm comm,
-                                                     const Discretisation& discretisation,
-                                                     Symmetry symmetry,
-                                                     const model::Derivative& theta);
+                     Symmetry symmetry, StaticPhase static_phase,
+                     std::optional<model::Derivative> derivative = {});
 
   [[nodiscard]] const Discretisation& discretisation() const { return data_->discretisation; }
   [[nodiscard]] const StateSpace& states() const { return data_->states; }
@@ -142,6 +137,15 @@ class KolmogorovOperator {
   /// smooth, or `averaged`. Collective. O(levels velocity nodes), averaged a hundred times that.
   using Observable = std::function<double(double x, double y, double v)>;
   [[nodiscard]] linalg::VecHandle values(const Observable& f, bool averaged = false) const;
+  /// f(state) on all states. Collective.
+  template <class Function>
+  [[nodiscard]] linalg::VecHandle by_state(Function f) const {
+    linalg::VecHandle result = zeros();
+    linalg::WriteView local(result);
+    PetscInt at = 0;
+    states().for_each_local([&](const State& state) { local[at++] = f(state); });
+    return result;
+  }
   /// What sums over velocity nodes overlook of f, by VelocityDiscretisation::overlooked: the
   /// product with an occupation, or u(s+) where (lambda - L) u is this, is an error of what
   /// values(f) gives. Other nodes would see it, and no refinement need. Zero where f is a
@@ -151,18 +155,18 @@ class KolmogorovOperator {
   [[nodiscard]] linalg::VecHandle zeros() const;
 
  private:
-  KolmogorovOperator(MPI_Comm comm, const Discretisation& discretisation, Shift<PetscScalar> shift,
-                     Symmetry symmetry, StaticPhase static_phase,
-                     std::optional<model::Derivative> derivative);
-
   // The nodes by which states of a branch are counted.
   [[nodiscard]] const Nodes& nodes_along(Branch branch) const {
     const auto& nodes = *discretisation().noise;
     return branch == Branch::positive ? nodes : nodes.mirrored();
   }
 
-  // Adds weight times the value at (x_i, v) to a functional that is not assembled yet.
-  void add_value_at(int i, double v, double weight, Vec functional) const;
+  // What fill(add) adds up by add(state, weight), on any rank.
+  template <class Fill>
+  [[nodiscard]] linalg::VecHandle functional(Fill fill) const;
+  // Adds weight times the value at (x_i, v).
+  template <class Add>
+  void add_value_at(int i, double v, double weight, const Add& add) const;
 
   std::shared_ptr<MatrixData> data_;
   std::map<int, std::vector<std::pair<PetscInt, double>>> traces_;  // by level

@@ -4,8 +4,10 @@
 #include <petscvec.h>
 
 #include <complex>
+#include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -22,35 +24,25 @@ namespace stickslip::generator {
 /// Prefix of the PETSc options of the solver for these operators.
 inline const std::string kSlidePrefix = "slide_";
 
-/// Assembles an operator and enters it in the statistics. Collective.
+/// Assembles an operator, or its derivative, and enters it in the statistics. Collective.
 [[nodiscard]] KolmogorovOperator assemble(MPI_Comm comm, const Discretisation& discretisation,
                                           Shift<PetscScalar> shift, Symmetry symmetry,
                                           StaticPhase static_phase,
-                                          linalg::SolverStatistics& statistics);
+                                          linalg::SolverStatistics& statistics,
+                                          std::optional<model::Derivative> derivative = {});
 
-/// The same for its derivative. Collective.
-[[nodiscard]] KolmogorovOperator
-assemble_derivative(MPI_Comm comm, const Discretisation& discretisation, Symmetry symmetry,
-                    const model::Derivative& theta, linalg::SolverStatistics& statistics);
-
-/// The solver of an operator, which must live as long: by default of the type default_pc_type().
-/// Collective. Throws NoMemory or NotReached.
-[[nodiscard]] std::unique_ptr<linalg::Factorization>
-factorization(const KolmogorovOperator& a, linalg::SolverStatistics& statistics);
-
-/// lambda - L with its solver.
+/// lambda - L with its solver, by default of the type default_pc_type().
 class System {
  public:
   /// Collective. Throws NoMemory or NotReached.
-  System(KolmogorovOperator a, linalg::SolverStatistics& statistics)
-      : a_(std::move(a)), factors_(factorization(a_, statistics)) {}
+  System(KolmogorovOperator a, linalg::SolverStatistics& statistics);
 
   [[nodiscard]] const KolmogorovOperator& a() const { return a_; }
-  [[nodiscard]] linalg::Factorization& factors() { return *factors_; }
+  [[nodiscard]] linalg::Factorization& factors() { return factors_; }
 
  private:
   KolmogorovOperator a_;
-  std::unique_ptr<linalg::Factorization> factors_;
+  linalg::Factorization factors_;
 };
 
 /// One system for each key that is asked for, and none else; each is assembled
@@ -112,9 +104,6 @@ class ComplexSolver {
   /// `a` must live as long. Collective. Throws NoMemory or NotReached.
   ComplexSolver(const KolmogorovOperator& a, Shift<std::complex<double>> shift,
                 linalg::SolverStatistics& statistics);
-  ~ComplexSolver();
-  ComplexSolver(const ComplexSolver&) = delete;
-  ComplexSolver& operator=(const ComplexSolver&) = delete;
 
   struct Solution {
     ComplexVector x;
@@ -128,10 +117,6 @@ class ComplexSolver {
   [[nodiscard]] ComplexVector solve_once(const ComplexVector& b, bool transposed);
 
  private:
-  class Factors;
-  class ByElements;
-  class InRealForm;
-
   // r = b - (A + d) x.
   [[nodiscard]] ComplexVector residual(const ComplexVector& b, const ComplexVector& x,
                                        bool transposed) const;
@@ -139,7 +124,7 @@ class ComplexSolver {
   const KolmogorovOperator& a_;
   ComplexVector diagonal_;  // d
   linalg::SolverStatistics& statistics_;
-  std::unique_ptr<Factors> factors_;
+  std::function<void(const ComplexVector& b, const ComplexVector& x, bool transposed)> factors_;
 };
 
 }  // namespace stickslip::generator

@@ -38,11 +38,10 @@ struct FactorCost {
   double operations = 0;  ///< of factoring
 };
 
-/// Of ElementElimination on one velocity branch, exactly; `noise` null: every level of the process
-/// is a node. The elements are distributed over the ranks, what is between them each rank has.
-/// Local. O(elements (groups + log nodes)).
+/// Of ElementElimination on one velocity branch, exactly. The elements are distributed over the
+/// ranks, what is between them each rank has. Local. O(elements (groups + log nodes)).
 [[nodiscard]] FactorCost elimination_cost(const model::Process& process,
-                                          const HpDiscretisation& velocities, const Nodes* noise,
+                                          const HpDiscretisation& velocities, const Nodes& noise,
                                           int ranks);
 
 /// Of both velocity branches, or of the positive one if symmetry-reduced or as good as both.

@@ -76,6 +76,10 @@ class StateSpace {
   [[nodiscard]] PetscInt local_size() const { return local_size_; }
   /// First global index of this rank.
   [[nodiscard]] PetscInt local_begin() const { return blocks_[rank_].begin; }
+  /// Whether a global index is of this rank.
+  [[nodiscard]] bool owns(PetscInt index) const {
+    return local_begin() <= index && index < local_begin() + local_size_;
+  }
   /// Noise nodes of this rank, rising.
   [[nodiscard]] const std::vector<int>& local_noise() const { return local_noise_; }
 

@@ -93,31 +93,29 @@ struct Shift {
 };
 
 /// lambda - L on functions of one symmetry, killed where |v| reaches a limit; with a tilt, of none.
-/// By the clock of time there may be more on the path. With a passage those alone are killed, and
-/// elements go on beyond the limit.
+/// With a passage those alone are killed, and elements go on beyond the limit.
 struct SystemKey {
   double lambda = 0;
   Symmetry symmetry = Symmetry::even;
   StaticPhase static_phase = StaticPhase::killing;
   Clock clock = Clock::time;
   double speed_limit = kInfinity;
-  double path = 0, tilt = 0;  ///< [1/(velocity time)]
+  double tilt = 0;  ///< [1/(velocity time)]
   std::optional<model::Passage> passage = {};
   double lowest = -kInfinity, highest = kInfinity;  ///< velocities up to which the tilt grows
 
   [[nodiscard]] Shift<double> shift() const {
     Shift<double> all(lambda, clock);
-    all.path += path;
     all.tilt = tilt;
     all.lowest = lowest;
     all.highest = highest;
     return all;
   }
   friend bool operator<(const SystemKey& a, const SystemKey& b) {
-    return std::tie(a.lambda, a.symmetry, a.static_phase, a.clock, a.speed_limit, a.path, a.tilt,
-                    a.passage, a.lowest, a.highest) <
-           std::tie(b.lambda, b.symmetry, b.static_phase, b.clock, b.speed_limit, b.path, b.tilt,
-                    b.passage, b.lowest, b.highest);
+    return std::tie(a.lambda, a.symmetry, a.static_phase, a.clock, a.speed_limit, a.tilt, a.passage,
+                    a.lowest, a.highest) < std::tie(b.lambda, b.symmetry, b.static_phase, b.clock,
+                                                    b.speed_limit, b.tilt, b.passage, b.lowest,
+                                                    b.highest);
   }
   friend bool operator==(const SystemKey&, const SystemKey&) = default;
 };

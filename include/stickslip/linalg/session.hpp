@@ -86,9 +86,6 @@ class Session {
 [[nodiscard]] int rank(MPI_Comm comm);
 [[nodiscard]] int ranks(MPI_Comm comm);
 
-/// Adds the values of all ranks up, entry by entry. Collective.
-void sum_over_ranks(MPI_Comm comm, std::vector<double>& values);
-
 /// The text of the lowest rank that has one, so that what one rank alone finds ends all ranks
 /// alike; empty if none has. Collective.
 [[nodiscard]] std::string first_text(MPI_Comm comm, std::string text);

@@ -67,29 +67,12 @@ void set_direct_solver(KSP ksp);
 /// with any option of the PC or its matrices LU is the default. Collective.
 [[nodiscard]] KspHandle linear_solver(Mat matrix, const std::string& prefix, PCType pc_type);
 
-/// Whether the PC of a KSP is of a type of this program: it needs the matrix of an operator.
-[[nodiscard]] bool is_own(KSP ksp);
-
-/// Solves for all of `b` at once, or with the transposed matrix, where a KSP is nothing but a PC of
-/// this program: others return false. Collective.
-[[nodiscard]] bool solve_together(KSP ksp, std::span<const Vec> b, std::span<const Vec> x,
-                                  bool transposed);
-
-/// Factors; MUMPS gets more workspace once if it runs out of what it set aside (INFOG(1) = -8, -9),
-/// as pivots against the order that the analysis foresaw can need more, for which `ksp` is made
-/// anew. Collective. Throws NoMemory or NotReached when the factorisation has failed.
-void factor(KspHandle& ksp, Mat matrix, const std::string& prefix);
-
 /// Throws NoMemory or NotReached when the factorisation of a KSP has failed.
 void require_factored(KSP ksp, const std::string& prefix);
 
 /// Adds memory and entries of the factors of a KSP, as MUMPS or kAnalyse count them; nothing for
 /// other solvers.
 void record_factors(KSP ksp, SolverStatistics& statistics);
-
-/// Orders and analyses `matrix` as the PC would, and stops there; zeros for solvers that report
-/// nothing. Collective.
-[[nodiscard]] Analysis analyse(KSP ksp, Mat matrix, const std::string& prefix);
 
 /// A solution after iterative refinement. `correction` is the sum of the steps of refinement: x -
 /// correction is the solution of one solve alone, and the effect of the correction on a functional
@@ -107,9 +90,10 @@ class Factorization {
  public:
   /// Analyses and factors `matrix` (kept by reference count). `prefix` without the dash, with the
   /// trailing underscore. Times and counts go to `statistics`, which must outlive this object.
-  /// Where MUMPS runs out of the workspace that it set aside (INFOG(1) = -8, -9), it is given more
-  /// once. Throws NoMemory when the factors do not fit, NotReached when the factorisation fails.
-  /// `pc_type`: default of -<prefix>pc_type.
+  /// Where MUMPS runs out of the workspace that it set aside (INFOG(1) = -8, -9), as pivots against
+  /// the order that the analysis foresaw can need more, it is given more once. Throws NoMemory when
+  /// the factors do not fit, NotReached when the factorisation fails. `pc_type`: default of
+  /// -<prefix>pc_type.
   Factorization(Mat matrix, const std::string& prefix, SolverStatistics& statistics,
                 PCType pc_type = PCLU);
 
@@ -128,12 +112,12 @@ class Factorization {
   void solve_once(Vec b, Vec x);
   void solve_transposed_once(Vec b, Vec x);
 
-  /// Orders and analyses `matrix` as the constructor would, and stops there. Collective.
+  /// Orders and analyses `matrix` as the constructor would, and stops there; zeros for solvers that
+  /// report nothing. Collective.
   [[nodiscard]] static Analysis analyse(Mat matrix, const std::string& prefix,
                                         SolverStatistics& statistics, PCType pc_type = PCLU);
 
  private:
-  void factor();
   [[nodiscard]] std::vector<Solution> solve(std::span<const Vec> b, bool transposed);
   void solve_some(std::span<const Vec> b, std::span<Solution> solutions, bool transposed);
   [[nodiscard]] std::string advice() const;

@@ -7,7 +7,9 @@
 #include <slepceps.h>
 
 #include <exception>
+#include <iterator>
 #include <span>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -195,6 +197,15 @@ class WholeVectors {
   VecHandle all_;
   PetscInt begin_ = 0;
 };
+
+/// Adds the numbers of all ranks up, entry by entry. Collective.
+template <class Numbers>
+void sum_over_ranks(MPI_Comm comm, Numbers& numbers) {
+  constexpr bool real = std::is_same_v<decltype(*std::data(numbers)), double&>;
+  const auto type = real ? MPI_DOUBLE : MPI_C_DOUBLE_COMPLEX;
+  MPI_Allreduce(MPI_IN_PLACE, std::data(numbers), static_cast<int>(std::size(numbers)), type,
+                MPI_SUM, comm);
+}
 
 /// Collective.
 [[nodiscard]] inline VecHandle copy_of(Vec vec) {
