@@ -63,70 +63,52 @@ class CoupledPencil final : public Pencil {
   }
 
   void multiply(Vec x, Vec y, bool transposed) const override {
-    const Parts given = apart(x);
-    const linalg::VecHandle y2 = outer_.a().zeros(), y1 = inner_.a().zeros();
-    outer_.multiply(given.outer, y2, transposed);
-    inner_.multiply(given.inner, y1, transposed);
-    transposed ? couple(-1, given.outer, outer_places_, y1, inner_places_)
-               : couple(-1, given.inner, inner_places_, y2, outer_places_);
-    join(y2, y1, y);
+    const Parts given = apart(x), image = zeros();
+    outer_.multiply(given.outer, image.outer, transposed);
+    inner_.multiply(given.inner, image.inner, transposed);
+    send(-1, given, image, transposed);
+    join(image.outer, image.inner, y);
   }
 
   void solve(double z, Vec b, Vec x, bool transposed, bool refined) override {
-    const Parts given = apart(b);
-    const linalg::VecHandle x2 = outer_.a().zeros(), x1 = inner_.a().zeros();
-    if (transposed) {
-      outer_.solve(z, given.outer, x2, true, refined);
-      couple(1, x2, outer_places_, given.inner, inner_places_);
-      inner_.solve(z, given.inner, x1, true, refined);
-    } else {
-      inner_.solve(z, given.inner, x1, false, refined);
-      couple(1, x1, inner_places_, given.outer, outer_places_);
-      outer_.solve(z, given.outer, x2, false, refined);
-    }
-    join(x2, x1, x);
+    const Parts given = apart(b), found = zeros();
+    const auto by = [&](ProcessPencil& pencil, Part part) {
+      pencil.solve(z, given.*part, found.*part, transposed, refined);
+    };
+    transposed ? by(outer_, &Parts::outer) : by(inner_, &Parts::inner);
+    send(1, found, given, transposed);
+    transposed ? by(inner_, &Parts::inner) : by(outer_, &Parts::outer);
+    join(found.outer, found.inner, x);
   }
 
-  [[nodiscard]] std::unique_ptr<ShiftedPencil> shifted(std::complex<double> z) override {
-    return std::make_unique<Shifted>(*this, z);
-  }
-
- private:
-  class Shifted final : public ShiftedPencil {
-   public:
-    Shifted(const CoupledPencil& pencil, std::complex<double> z)
-        : pencil_(pencil), outer_(pencil.outer_.shifted(z)), inner_(pencil.inner_.shifted(z)) {}
-
-    [[nodiscard]] ComplexVector solve(const ComplexVector& b, bool transposed) override {
-      Parts real = pencil_.apart(b.real), imaginary = pencil_.apart(b.imaginary);
-      if (transposed) solve_with(*outer_, real.outer, imaginary.outer, true);
-      if (!transposed) solve_with(*inner_, real.inner, imaginary.inner, false);
-      for (const Parts* parts : {&real, &imaginary}) pencil_.send(*parts, transposed);
-      if (transposed) solve_with(*inner_, real.inner, imaginary.inner, true);
-      if (!transposed) solve_with(*outer_, real.outer, imaginary.outer, false);
+  [[nodiscard]] ShiftedInverse shifted(std::complex<double> z) override {
+    return [this, outer = outer_.shifted(z), inner = inner_.shifted(z)](const ComplexVector& b,
+                                                                        bool transposed) {
+      Parts real = apart(b.real), imaginary = apart(b.imaginary);
+      const auto by = [&](const ShiftedInverse& inverse, Part part) {
+        ComplexVector x = inverse({std::move(real.*part), std::move(imaginary.*part)}, transposed);
+        real.*part = std::move(x.real);
+        imaginary.*part = std::move(x.imaginary);
+      };
+      transposed ? by(outer, &Parts::outer) : by(inner, &Parts::inner);
+      for (const Parts* parts : {&real, &imaginary}) send(1, *parts, *parts, transposed);
+      transposed ? by(inner, &Parts::inner) : by(outer, &Parts::outer);
       ComplexVector x{linalg::copy_of(b.real), linalg::copy_of(b.imaginary)};
       join(real.outer, real.inner, x.real);
       join(imaginary.outer, imaginary.inner, x.imaginary);
       return x;
-    }
+    };
+  }
 
-   private:
-    static void solve_with(ShiftedPencil& factors, linalg::VecHandle& real,
-                           linalg::VecHandle& imaginary, bool transposed) {
-      ComplexVector x = factors.solve({std::move(real), std::move(imaginary)}, transposed);
-      real = std::move(x.real);
-      imaginary = std::move(x.imaginary);
-    }
-
-    const CoupledPencil& pencil_;
-    std::unique_ptr<ShiftedPencil> outer_, inner_;
-  };
-
+ private:
   struct Parts {
     linalg::VecHandle outer, inner;
   };
+  using Part = linalg::VecHandle Parts::*;
+
+  [[nodiscard]] Parts zeros() const { return {outer_.a().zeros(), inner_.a().zeros()}; }
   [[nodiscard]] Parts apart(Vec all) const {
-    Parts parts{outer_.a().zeros(), inner_.a().zeros()};
+    Parts parts = zeros();
     const linalg::ReadView from(all);
     linalg::WriteView outer(parts.outer), inner(parts.inner);
     const auto* middle = from.data() + outer.size();
@@ -140,16 +122,12 @@ class CoupledPencil final : public Pencil {
     std::copy(second.data(), second.data() + second.size(),
               std::copy(first.data(), first.data() + first.size(), to.data()));
   }
-  // What a solution of the part that comes first sends into the other one.
-  void send(const Parts& parts, bool transposed) const {
-    transposed ? couple(1, parts.outer, outer_places_, parts.inner, inner_places_)
-               : couple(1, parts.inner, inner_places_, parts.outer, outer_places_);
-  }
-  // y += sign f x.
-  void couple(double sign, Vec x, const std::vector<PetscInt>& from, Vec y,
-              const std::vector<PetscInt>& to) const {
-    const linalg::ReadView values(x);
-    linalg::WriteView sums(y);
+  // y += sign f x, from the part of x that is solved for first into the other one of y.
+  void send(double sign, const Parts& x, const Parts& y, bool transposed) const {
+    const auto &from = transposed ? outer_places_ : inner_places_,
+               &to = transposed ? inner_places_ : outer_places_;
+    const linalg::ReadView values(transposed ? x.outer : x.inner);
+    linalg::WriteView sums(transposed ? y.inner : y.outer);
     for (std::size_t n = 0; n < f_.size(); ++n) sums[to[n]] += sign * f_[n] * values[from[n]];
   }
 
@@ -256,12 +234,8 @@ void find_transform(Computation& computation) {
   const auto wavenumbers = question.values(cases::kWavenumber.option);
   const bool even = model::mirrors_itself(computation.process(), question.start);
   for (double t : question.time) {
-    const auto of = [&](const Row& row) {
-      Result result = array(row, wavenumbers);
-      result.key = row.key_of(fmt::format("{}", t));
-      return result;
-    };
-    Result cosine = of(cases::kDisplacementCosine), sine = of(cases::kDisplacementSine);
+    Result cosine = array_at(cases::kDisplacementCosine, t, wavenumbers),
+           sine = array_at(cases::kDisplacementSine, t, wavenumbers);
     DisplacementModel model(computation.systems, computation.distribution(), question.start, t,
                             computation.tolerance().value);
     for (double k : wavenumbers) {

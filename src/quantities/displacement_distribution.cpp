@@ -471,8 +471,7 @@ void find_displacements(Computation& computation) {
     append_value(position, {atoms[0].at, kPlace * std::abs(atoms[0].at)});
     const auto append = [&](const Row& row, const std::vector<double>& abscissa, auto of) {
       if (abscissa.empty()) return;
-      Result result = array(row, abscissa);
-      result.key = row.key_of(fmt::format("{}", t));
+      Result result = array_at(row, t, abscissa);
       // Near 0, where it is singular, no discretisation gives the digits of the distribution
       // function.
       result.diagnostic = &row == &cases::kDisplacementDensity;

@@ -14,7 +14,6 @@
 #include "stickslip/linalg/petsc.hpp"
 #include "stickslip/linalg/vectors.hpp"
 #include "stickslip/quantities/plan.hpp"
-#include "stickslip/quantities/values.hpp"
 
 namespace stickslip::quantities {
 namespace {
@@ -187,7 +186,7 @@ class Powers {
         sums[1] += std::abs(was);
       }
     }
-    MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, systems_.comm());
+    linalg::sum_over_ranks(systems_.comm(), sums);
     off_ = std::max(off_, sums[0] / sums[1]);
   }
 

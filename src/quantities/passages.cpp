@@ -109,8 +109,9 @@ Transport transport(const generator::Discretisation& killed, int level, double v
   return t;
 }
 
-}  // namespace
-
+// The time before which nobody arrives from a start that is not stationary, as forces between those
+// of the lowest and the highest level make nobody faster than these two; infinite beyond `longest`.
+// 0 on grids.
 double earliest_arrival(const generator::Discretisation& killed, const generator::SystemKey& key,
                         const model::Start& start, double longest) {
   if (killed.velocities->keeps_origin()) return 0;
@@ -120,6 +121,20 @@ double earliest_arrival(const generator::Discretisation& killed, const generator
                   arrival(process, key, process.noise.highest(), v, longest));
 }
 
+// What bodies that reach the speed before the force first changes, all at one time, add to density
+// and distribution function at one time.
+struct Unturned {
+  double exact = 0;                      // P(T <= t) by their path, a step
+  double distribution = 0, density = 0;  // by the elements, which smear the step out
+};
+
+// By time > 0, from a start that is not stationary. On level i with the probability p_i such a body
+// arrives after t_i, and with the probability p_i exp(-rate_i t_i), rate_i the largest one at which
+// levels of its force are left for others, as if all were left at that rate: of those left more
+// slowly a part. On the elements it is transported by the matrix of its force alone. What has less
+// than `least` of the probability is left out. Zero on grids, which are chains of their own.
+// `killed` kills at the speed of `key`. O(size^3) for each level, size that of the elements below
+// the speed.
 std::vector<Unturned> before_first_jump(const generator::Discretisation& killed,
                                         const generator::SystemKey& key, const model::Start& start,
                                         const std::vector<double>& time, double least) {
@@ -150,9 +165,14 @@ std::vector<Unturned> before_first_jump(const generator::Discretisation& killed,
   return all;
 }
 
-namespace {
+// u -> sliding . u + at_rest . u over the states of a start.
+struct StartingPoint {
+  linalg::VecHandle sliding;
+  ByLevel at_rest;
+};
 
-// The stationary distribution, with what is beyond the speed.
+// The stationary distribution, with what is beyond the speed; it is found on the same elements
+// without killing.
 StartingPoint stationary_start(generator::Systems& systems, double speed,
                                const KolmogorovOperator& a) {
   generator::Systems whole(systems.comm(), systems.discretisation().passing(speed, std::nullopt),
@@ -162,15 +182,11 @@ StartingPoint stationary_start(generator::Systems& systems, double speed,
   const linalg::ReadView nu(law.occupation());
   const bool halved = states.symmetry_reduced() && !a.states().symmetry_reduced();
   const double total = law.excursion().mean_excursion() * (halved ? 2 : 1);
-  StartingPoint start{a.zeros(), law.excursion().stick_time};
-  {
-    linalg::WriteView local(start.sliding);
-    PetscInt at = 0;
-    a.states().for_each_local([&](generator::State state) {
-      if (halved) state.branch = generator::Branch::positive;
-      local[at++] = nu[states.index(state) - states.local_begin()] / total;
-    });
-  }
+  StartingPoint start{a.by_state([&](generator::State state) {
+                        if (halved) state.branch = generator::Branch::positive;
+                        return nu[states.index(state) - states.local_begin()] / total;
+                      }),
+                      law.excursion().stick_time};
   if (halved) {
     const ByLevel stick = start.at_rest;
     for (std::size_t n = 0; n < stick.size(); ++n) start.at_rest[n] += stick[stick.size() - 1 - n];
@@ -179,8 +195,7 @@ StartingPoint stationary_start(generator::Systems& systems, double speed,
   return start;
 }
 
-}  // namespace
-
+// On sliding states alone, those of `a`, which ends elements at `speed`.
 StartingPoint starting_point(generator::Systems& systems, double speed, const model::Start& start,
                              const KolmogorovOperator& a, const StickingPhases& sticking) {
   using enum model::Start::Kind;
@@ -196,19 +211,19 @@ StartingPoint starting_point(generator::Systems& systems, double speed, const mo
   return {a.value_at(start.level, start.v), std::move(at_rest)};
 }
 
+// Where excursions start, by the states that a system of that symmetry keeps.
 StickingPhases sticking_phases(const model::Process& process, generator::Symmetry symmetry,
-                               double lambda) {
+                               double lambda = 0) {
   const bool reduced = symmetry != generator::Symmetry::none;
   return {process, reduced ? Starts::upwards(process).levels : process.starts(), reduced, lambda};
 }
 
+// 1 in the states of `a` that are not beyond the speed of a passage, 0 in others.
 linalg::VecHandle inside(const KolmogorovOperator& a, const generator::SystemKey& key) {
   return a.values([&](double, double, double v) {
     return model::has_passed(*key.passage, v, key.speed_limit) ? 0.0 : 1.0;
   });
 }
-
-namespace {
 
 // Of starts about their mean.
 double spread(const StartingPoint& start, Vec m, const ByLevel& at_rest, double mean) {
@@ -254,20 +269,14 @@ PassageTime passage_time(generator::Systems& systems, const generator::SystemKey
     const linalg::VecHandle to_come = linalg::product(on, before);
     return paths + spread(first, to_come, time.at_rest, time.overall);
   };
-  const double var = variance(until, m.x);
-  return {{time.overall, std::abs(time.overall - roughly.integral(one, sticking.each(1)).overall)},
-          {var, std::abs(var - variance(roughly, m.correction))}};
+  return {changed_from(roughly.integral(one, sticking.each(1)).overall, time.overall),
+          changed_from(variance(roughly, m.correction), variance(until, m.x))};
 }
 
 namespace {
 
-void append_passage_times(const Computation& computation, const std::vector<PassageTime>& times) {
-  append_by_speed(computation, cases::kPassageMean, times, &PassageTime::mean);
-  append_by_speed(computation, cases::kPassageVariance, times, &PassageTime::variance);
-}
-
-}  // namespace
-
+// The systems of a passage of `speed` as asked for: with symmetry |V| has that of one branch;
+// passages of V itself need both.
 generator::SystemKey passage_system(const Planner& planner, double speed) {
   auto key = planner.system();
   key.speed_limit = speed;
@@ -276,11 +285,13 @@ generator::SystemKey passage_system(const Planner& planner, double speed) {
   return key;
 }
 
+// From how many levels excursions start in these.
 int starts_in(const Planner& planner, const generator::SystemKey& key) {
   if (key.symmetry != generator::Symmetry::none) return planner.starts();
   return static_cast<int>(planner.given().scene.meant().starts().size());
 }
 
+// One about that passage, still without uses: a stationary start takes a factorisation of its own.
 Task passage_task(const Planner& planner, const char* name, const generator::SystemKey& key) {
   Task task{fmt::format("{} to w = {:g}", name, key.speed_limit)};
   task.adaptive = planner.question().start.kind == model::Start::Kind::stationary;
@@ -288,10 +299,16 @@ Task passage_task(const Planner& planner, const char* name, const generator::Sys
   return task;
 }
 
+}  // namespace
+
 void first_passage_tasks(Planner& planner) {
   planner.resolve_speeds();
   const auto& start = planner.question().start;
-  const auto found = planner.collect<PassageTime>(append_passage_times);
+  const auto found =
+      planner.collect<PassageTime>([](const Computation& computation, const auto& all) {
+        append_by_speed(computation, cases::kPassageMean, all, &PassageTime::mean);
+        append_by_speed(computation, cases::kPassageVariance, all, &PassageTime::variance);
+      });
   for (double speed : planner.question().velocity) {
     const auto key = passage_system(planner, speed);
     const auto find = [=, start = start](Computation& computation) {
@@ -332,26 +349,6 @@ Uncertain transform_from(const StartingPoint& first, bool stationary, generator:
                value = later + (stationary ? passed(first, a, key) : 0),
                rounding = std::abs(later - by(&linalg::Solution::correction));
   return value > 2 * rounding ? Uncertain{value, rounding} : kNoValue;
-}
-
-// A start on an operator that keeps static states, which lists sliding states in the same order;
-// symmetry-reduced, levels i and -i at rest are one state.
-linalg::VecHandle on_all_states(const KolmogorovOperator& whole, const StartingPoint& first) {
-  linalg::VecHandle all = whole.zeros();
-  linalg::WriteView local(all);
-  const linalg::ReadView sliding(first.sliding);
-  const int lowest = whole.discretisation().process.lowest_static();
-  PetscInt at = 0, next = 0;
-  whole.states().for_each_local([&](const generator::State& state) {
-    if (state.kind != generator::StateKind::static_phase) {
-      local[at++] = sliding[next++];
-      return;
-    }
-    const bool pair = whole.states().symmetry_reduced() && state.noise != 0;
-    local[at++] =
-        first.at_rest[state.noise - lowest] + (pair ? first.at_rest[-state.noise - lowest] : 0);
-  });
-  return all;
 }
 
 /// Density and distribution function at positive times.
@@ -454,9 +451,11 @@ DurationDistribution passage_distribution(generator::Systems& systems,
     const model::Start of_law{.kind = model::Start::Kind::stationary};
     law = starting_point(systems, w, of_law, moving, sticking);
   }
-  const linalg::VecHandle b = a.rates_to_top(),
-                          c = product(on_all_states(a, first), inside(a, key)),
-                          d = positive_weight(on_all_states(a, law ? *law : first));
+  const auto of = [&a](const StartingPoint& start_at) {
+    return on_states_of(a, start_at.sliding, start_at.at_rest);
+  };
+  const linalg::VecHandle b = a.rates_to_top(), c = product(of(first), inside(a, key)),
+                          d = positive_weight(of(law ? *law : first));
   const Ends ends{b, c, d};
   Curves curves(pencil, ends, w, mean, tolerance);
   const double longest = 10 * *std::ranges::max_element(time),
@@ -498,8 +497,7 @@ namespace {
 
 Result of_speed(const Row& row, const std::vector<double>& abscissa, double speed,
                 const std::vector<Uncertain>& values) {
-  Result result = array(row, abscissa);
-  result.key = row.key_of(fmt::format("{}", speed));
+  Result result = array_at(row, speed, abscissa);
   for (const Uncertain& value : values) append_value(result, value);
   name_too_rare(result);
   return result;
@@ -558,14 +556,6 @@ void passage_distribution_tasks(Planner& planner) {
   }
 }
 
-namespace {
-
-double mean_over(const Starts& starts, const std::vector<double>& by_start) {
-  return std::inner_product(starts.shares.begin(), starts.shares.end(), by_start.begin(), 0.0);
-}
-
-}  // namespace
-
 FirstPassage first_passage(generator::Systems& systems, const Starts& starts, double speed) {
   const auto& process = systems.process();
   generator::SystemKey key{0, generator::symmetry_of(process)};
@@ -578,38 +568,34 @@ FirstPassage first_passage(generator::Systems& systems, const Starts& starts, do
                                    a.mean_at_zero(model::stationary_distribution(process.noise)));
   const UntilPassage until(a, sticking, at_rest, nu, &linalg::Solution::x),
       roughly(a, sticking, at_rest, nu, &linalg::Solution::correction);
-  const double exceeded = mean_over(starts, until.reached());
-  const double rounding = std::abs(exceeded - mean_over(starts, roughly.reached()));
+  const auto mean = [&starts](const std::vector<double>& by_start) {
+    return std::inner_product(starts.shares.begin(), starts.shares.end(), by_start.begin(), 0.0);
+  };
+  const auto [exceeded, rounding] = changed_from(mean(roughly.reached()), mean(until.reached()));
   if (!(exceeded > 2 * rounding)) return {kNoValue, kNoValue, kNoValue};
   const auto one = a.values([](double, double, double) { return 1.0; });
   const auto times = [&](const UntilPassage& by) {
     const auto time = by.integral(one, sticking.each(1));
-    return std::pair{mean_over(starts, time.at_starts), time.overall};
+    return std::pair{mean(time.at_starts), time.overall};
   };
   const auto [from_slide, from_rest] = times(until);
   const auto [roughly_from_slide, roughly_from_rest] = times(roughly);
   return {{exceeded, rounding},
-          {from_slide, std::abs(from_slide - roughly_from_slide)},
-          {from_rest, std::abs(from_rest - roughly_from_rest)}};
+          changed_from(roughly_from_slide, from_slide),
+          changed_from(roughly_from_rest, from_rest)};
 }
-
-namespace {
-
-void append_first_passages(const Computation& computation,
-                           const std::vector<FirstPassage>& passages) {
-  append_by_speed(computation, cases::kPPeak, passages, &FirstPassage::exceeded);
-  append_by_speed(computation, cases::kFirstPassage, passages, &FirstPassage::from_slide);
-  append_by_speed(computation, cases::kFirstPassageRest, passages, &FirstPassage::from_rest);
-}
-
-}  // namespace
 
 // From each start, and from rest.
 void peak_tasks(Planner& planner) {
   planner.resolve_speeds();
   const bool symmetric = planner.symmetric();
   if (!symmetric) planner.need_distribution();  // which has the shares of starts
-  const auto found = planner.collect<FirstPassage>(append_first_passages);
+  const auto found =
+      planner.collect<FirstPassage>([](const Computation& computation, const auto& all) {
+        append_by_speed(computation, cases::kPPeak, all, &FirstPassage::exceeded);
+        append_by_speed(computation, cases::kFirstPassage, all, &FirstPassage::from_slide);
+        append_by_speed(computation, cases::kFirstPassageRest, all, &FirstPassage::from_rest);
+      });
   for (double speed : planner.question().velocity) {
     auto system = planner.system();
     system.speed_limit = speed;

@@ -12,7 +12,6 @@
 #include "stickslip/linalg/session.hpp"
 #include "stickslip/quantities/engines/excursions.hpp"
 #include "stickslip/quantities/engines/propagator.hpp"
-#include "stickslip/quantities/values.hpp"
 
 namespace stickslip::quantities {
 namespace {

@@ -92,8 +92,7 @@ RelaxationMode mode_of(const generator::Systems& systems, const generator::State
       if (states.symmetry_reduced()) mode.at_rest[-state.noise - lowest] = sign * value;
     }
   });
-  MPI_Allreduce(MPI_IN_PLACE, mode.at_rest.data(), static_cast<int>(mode.at_rest.size()),
-                MPI_C_DOUBLE_COMPLEX, MPI_SUM, systems.comm());
+  linalg::sum_over_ranks(systems.comm(), mode.at_rest);
   return mode;
 }
 

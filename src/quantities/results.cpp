@@ -7,15 +7,8 @@
 #include <utility>
 
 #include "stickslip/base/text.hpp"
-#include "stickslip/linalg/vectors.hpp"
-#include "stickslip/quantities/values.hpp"
 
 namespace stickslip::quantities {
-
-Uncertain value_of(Vec functional, const linalg::Solution& solution) {
-  return {linalg::dot(functional, solution.x),
-          std::abs(linalg::dot(functional, solution.correction))};
-}
 
 namespace {
 
@@ -63,6 +56,12 @@ Result scalar(Result blank, double value, double error) {
 Result array(Result blank, std::vector<double> abscissa) {
   blank.abscissa = std::move(abscissa);
   return blank;
+}
+
+Result array_at(const Row& row, double at, std::vector<double> abscissa) {
+  Result result = array(row, std::move(abscissa));
+  result.key = row.key_of(fmt::format("{}", at));
+  return result;
 }
 
 std::string place(const Result& result, std::size_t n) {

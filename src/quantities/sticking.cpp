@@ -16,7 +16,6 @@
 #include "stickslip/quantities/engines/excursions.hpp"
 #include "stickslip/quantities/excursion.hpp"
 #include "stickslip/quantities/plan.hpp"
-#include "stickslip/quantities/values.hpp"
 
 namespace stickslip::quantities {
 namespace {

@@ -328,17 +328,11 @@ class Hitting {
   template <class AtRest>
   Means solve(double sliding, AtRest at_rest) {
     const auto& a = system_.a();
-    linalg::VecHandle source = a.zeros();
-    {
-      linalg::WriteView local(source);
-      PetscInt at = 0;
-      a.states().for_each_local([&](const generator::State& state) {
-        const bool rests = state.kind == generator::StateKind::static_phase;
-        const int level = state.noise - process_.lowest_static();
-        local[at++] = rests ? at_rest(static_cast<std::size_t>(level)) : sliding;
-      });
-    }
-    const auto u = system_.factors().solve(source);
+    const auto u = system_.factors().solve(a.by_state([&](const generator::State& state) {
+      const bool rests = state.kind == generator::StateKind::static_phase;
+      const int level = state.noise - process_.lowest_static();
+      return rests ? at_rest(static_cast<std::size_t>(level)) : sliding;
+    }));
     Means means;
     for (int start : starts_) means.push_back(quantities::value_of(a.trace_at_start(start), u));
     return means;
@@ -433,17 +427,11 @@ double integral(const KolmogorovOperator& a, Vec pi, const KolmogorovOperator::O
 Uncertain mean_excursion(const Problem& problem, const KolmogorovOperator& a, Vec pi, Vec before) {
   const auto& process = problem.discretisation.process;
   const auto rates = process.exit_rates();
-  const linalg::VecHandle exits = a.zeros();
-  {
-    linalg::WriteView local(exits);
-    PetscInt at = 0;
-    a.states().for_each_local([&](const generator::State& state) {
-      const bool rests = state.kind == generator::StateKind::static_phase;
-      local[at++] = rests ? rates[state.noise - process.lowest_static()] : 0;
-    });
-  }
-  const double value = 1 / linalg::dot(exits, pi);
-  return {value, std::abs(value - 1 / linalg::dot(exits, before))};
+  const linalg::VecHandle exits = a.by_state([&](const generator::State& state) {
+    const bool rests = state.kind == generator::StateKind::static_phase;
+    return rests ? rates[state.noise - process.lowest_static()] : 0;
+  });
+  return quantities::changed_from(1 / linalg::dot(exits, before), 1 / linalg::dot(exits, pi));
 }
 
 void append_durations(Uncertain excursion, quantities::Results& results) {
@@ -481,8 +469,8 @@ Evaluation by_null_vector(const Problem& problem) {
   Evaluation evaluation;
   std::vector<Uncertain> values;
   for (const auto& average : averages(problem)) {
-    const double value = integral(a, pi, average.f);
-    values.push_back({value, std::abs(value - integral(a, before, average.f))});
+    values.push_back(
+        quantities::changed_from(integral(a, before, average.f), integral(a, pi, average.f)));
   }
   append_averages(problem, values, evaluation.results);
   using cases::Quantity;

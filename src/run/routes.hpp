@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "stickslip/model/observable.hpp"
-#include "stickslip/quantities/values.hpp"
 #include "stickslip/run/evaluation.hpp"
 
 namespace stickslip::run {

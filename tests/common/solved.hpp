@@ -6,7 +6,6 @@
 #include "scenes.hpp"
 #include "stickslip/generator/resolvents.hpp"
 #include "stickslip/quantities/engines/excursions.hpp"
-#include "stickslip/quantities/values.hpp"
 
 namespace stickslip::test {
 

@@ -5,7 +5,7 @@
 #include "../common/catch.hpp"
 #include "../common/made_results.hpp"
 #include "stickslip/linalg/petsc.hpp"
-#include "stickslip/quantities/values.hpp"
+#include "stickslip/quantities/results.hpp"
 
 using namespace stickslip;
 using quantities::Result;

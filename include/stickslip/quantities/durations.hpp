@@ -9,7 +9,6 @@
 #include "stickslip/quantities/engines/excursions.hpp"
 #include "stickslip/quantities/engines/propagator.hpp"
 #include "stickslip/quantities/results.hpp"
-#include "stickslip/quantities/values.hpp"
 
 namespace stickslip::quantities {
 

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "stickslip/base/uncertain.hpp"
 #include "stickslip/case/entry.hpp"
 #include "stickslip/model/observable.hpp"
 
@@ -15,6 +16,8 @@ namespace stickslip::quantities {
 
 using cases::Kind;
 using cases::Row;
+using stickslip::kNoValue;
+using stickslip::Uncertain;
 
 /// A scalar (no abscissa, one value) or an array over an abscissa.
 struct Result {
@@ -67,8 +70,32 @@ struct Check {
 [[nodiscard]] inline Result scalar(const Row& row, double value, double error) {
   return scalar(blank(row), value, error);
 }
+[[nodiscard]] inline Result scalar(Result blank, Uncertain value) {
+  return scalar(std::move(blank), value.value, value.error);
+}
+[[nodiscard]] inline Result scalar(const Row& row, Uncertain value) {
+  return scalar(blank(row), value);
+}
 [[nodiscard]] inline Result array(const Row& row, std::vector<double> abscissa) {
   return array(blank(row), std::move(abscissa));
+}
+/// Of a row that stands for one array for each time or speed.
+[[nodiscard]] Result array_at(const Row& row, double at, std::vector<double> abscissa);
+
+inline void append_value(Result& array, Uncertain value) {
+  array.value.push_back(value.value);
+  array.error.push_back(value.error);
+}
+
+/// Appends an array with these values to the results.
+inline void append_array(Result array, const std::vector<Uncertain>& values, Results& results) {
+  for (const auto& value : values) append_value(array, value);
+  results.push_back(std::move(array));
+}
+
+/// A number that something has changed by as much as it may be wrong.
+[[nodiscard]] inline Uncertain changed_from(double before, double value) {
+  return {value, std::abs(value - before)};
 }
 
 /// The largest absolute value; 0 where there is none.

@@ -8,7 +8,6 @@
 #include "stickslip/model/process.hpp"
 #include "stickslip/quantities/engines/excursions.hpp"
 #include "stickslip/quantities/results.hpp"
-#include "stickslip/quantities/values.hpp"
 
 namespace stickslip::quantities {
 

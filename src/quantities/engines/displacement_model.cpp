@@ -70,12 +70,6 @@ Entries stationary_on(generator::Systems& systems, const StationaryDistribution&
   return all;
 }
 
-// The sum over all ranks.
-void add_up(MPI_Comm comm, std::vector<Complex>& x) {
-  MPI_Allreduce(MPI_IN_PLACE, x.data(), static_cast<int>(x.size()), MPI_C_DOUBLE_COMPLEX, MPI_SUM,
-                comm);
-}
-
 std::vector<Complex> conjugate(std::vector<Complex> x) {
   for (Complex& entry : x) entry = std::conj(entry);
   return x;
@@ -113,7 +107,7 @@ class Basis {
   [[nodiscard]] Vector products(const Vector& x) const {
     Vector all = conjugate(conjugate(x) * columns_);
     all.resize(static_cast<std::size_t>(size_));
-    add_up(comm_, all);
+    linalg::sum_over_ranks(comm_, all);
     return all;
   }
   // The products of x with the columns, the new one last; this is 0 where x is in their span.
@@ -150,7 +144,7 @@ class Basis {
   [[nodiscard]] double norm(const Vector& x) const {
     Vector square{0};
     for (const Complex entry : x) square[0] += std::norm(entry);
-    add_up(comm_, square);
+    linalg::sum_over_ranks(comm_, square);
     return std::sqrt(square[0].real());
   }
   MPI_Comm comm_;
@@ -177,7 +171,7 @@ exponential_of(MPI_Comm comm, const Vector& one, const Vector& c, double z, doub
   for (int count = 1, next = least; count < most; ++count) {
     const Vector newest = basis.column(count - 1);
     Vector product{std::inner_product(c.begin(), c.end(), newest.begin(), Complex(0))};
-    add_up(comm, product);
+    linalg::sum_over_ranks(comm, product);
     seen.push_back(product[0]);
     const Vector shares = basis.add(resolvent(newest));
     std::copy(shares.begin(), shares.end(), h.column(count - 1));
@@ -253,7 +247,7 @@ void DisplacementModel::weigh_by(const Entries& l, const Entries& r, const Entri
     const double both = l[n] * r[n];
     sums = {sums[0] + both, sums[1] + both * v[n], sums[2] + both * v[n] * v[n]};
   }
-  MPI_Allreduce(MPI_IN_PLACE, sums.data(), 3, MPI_DOUBLE, MPI_SUM, systems_.comm());
+  linalg::sum_over_ranks(systems_.comm(), sums);
   drift_ = sums[1] / sums[0];
   speed_ = std::sqrt(std::abs(sums[2] / sums[0] - drift_ * drift_));
   resolved_ = true;

@@ -34,6 +34,22 @@ std::vector<double> real_parts(const std::vector<PetscScalar>& values) {
 
 }  // namespace
 
+Uncertain value_of(Vec functional, const linalg::Solution& solution) {
+  return {linalg::dot(functional, solution.x),
+          std::abs(linalg::dot(functional, solution.correction))};
+}
+
+linalg::VecHandle on_states_of(const KolmogorovOperator& a, Vec sliding, const ByLevel& at_rest) {
+  const linalg::ReadView values(sliding);
+  const int lowest = a.discretisation().process.lowest_static();
+  PetscInt next = 0;
+  return a.by_state([&](const State& state) -> PetscScalar {
+    if (state.kind != StateKind::static_phase) return values[next++];
+    const bool pair = a.states().symmetry_reduced() && state.noise != 0;
+    return at_rest[state.noise - lowest] + (pair ? at_rest[-state.noise - lowest] : 0);
+  });
+}
+
 double normalise(const KolmogorovOperator& a, Vec nu, double lambda) {
   const auto entry = real_parts(a.entry_rates(nu));
   PetscScalar time = 0;
@@ -83,19 +99,11 @@ Excursion excursion_of(const KolmogorovOperator& a, Vec nu, double lost) {
   return e;
 }
 
-/// Occupations over the sliding phases of excursions from one side, and before iterative
-/// refinement.
-struct Occupation {
-  linalg::VecHandle nu, uncorrected;
-  double lost = 0, uncorrected_lost = 0;
-};
-
-Occupation normalised(const KolmogorovOperator& a, linalg::Solution s) {
-  linalg::check(VecAYPX(s.correction, -1, s.x));
-  Occupation o{std::move(s.x), std::move(s.correction)};
-  o.lost = normalise(a, o.nu);
-  o.uncorrected_lost = normalise(a, o.uncorrected);
-  return o;
+// A null vector of L, over a time that is as good as any other.
+void scale_to_unit_time(Vec nu) {
+  PetscScalar time = 0;
+  linalg::check(VecSum(nu, &time));
+  linalg::check(VecScale(nu, 1.0 / time));
 }
 
 }  // namespace
@@ -105,61 +113,37 @@ StationaryDistribution::StationaryDistribution(Systems& systems)
       states_(systems.at(0, generator::symmetry_of(systems.process())).a().states()) {
   auto& system = systems.at(0, generator::symmetry_of(process()));
   const KolmogorovOperator& a = system.a();
-  const auto from = [&](const std::vector<int>& starts) {
-    std::vector<linalg::VecHandle> traces;
-    for (int start : starts) traces.push_back(a.trace_at_start(start));
-    std::vector<Occupation> all;
-    for (auto& s : system.factors().solve_transposed(traces)) {
-      const bool monotone = discretisation_.velocities->keeps_origin();
-      if (monotone) generator::require_occupation(s.x, process());
-      all.push_back(normalised(a, std::move(s)));
+  const bool rests = process().sticks(), symmetric = process().symmetric();
+  const Starts upwards = rests && symmetric ? Starts::upwards(process()) : Starts{};
+  const std::vector<int> levels = rests && !symmetric ? process().starts() : upwards.levels;
+  std::vector<linalg::VecHandle> from;
+  for (int level : levels) from.push_back(a.trace_at_start(level));
+  if (!rests) from.push_back(a.value_in_that_state());
+  const auto occupations = system.factors().solve_transposed(from);
+  for (const auto& nu : occupations) {
+    const bool monotone = rests && discretisation_.velocities->keeps_origin();
+    if (monotone) generator::require_occupation(nu.x, process());
+    linalg::check(VecAYPX(nu.correction, -1, nu.x));
+  }
+  const auto follow = [&](linalg::VecHandle linalg::Solution::*which, Excursion& excursion,
+                          linalg::VecHandle& occupation) {
+    std::vector<Excursion> each;
+    for (const auto& nu : occupations) {
+      if (!rests) scale_to_unit_time(nu.*which);
+      const double lost = rests ? normalise(a, nu.*which) : 0;
+      each.push_back(excursion_of(a, nu.*which, lost));
     }
-    return all;
+    const bool several = rests && !symmetric;
+    const Starts starts = several ? chain_of_starts(process(), levels, each) : upwards;
+    excursion = several ? joined(process(), starts, each) : each[0];
+    occupation = a.zeros();
+    for (std::size_t t = 0; t < occupations.size(); ++t) {
+      linalg::check(VecAXPY(occupation, rests ? starts.shares[t] : 1, occupations[t].*which));
+    }
+    return starts;
   };
-  if (!process().sticks()) {
-    // The null vector of L, over a time that is as good as any other.
-    auto s = system.factors().solve_transposed(a.value_in_that_state());
-    linalg::check(VecAYPX(s.correction, -1, s.x));
-    for (const auto& nu : {&s.x, &s.correction}) {
-      PetscScalar time = 0;
-      linalg::check(VecSum(*nu, &time));
-      linalg::check(VecScale(*nu, 1.0 / time));
-    }
-    excursion_ = excursion_of(a, s.x, 0);
-    uncorrected_ = excursion_of(a, s.correction, 0);
-    occupation_ = std::move(s.x);
-    uncorrected_occupation_ = std::move(s.correction);
-    return;
-  }
-  if (process().symmetric()) {
-    starts_ = Starts::upwards(process());
-    Occupation all = std::move(from(starts_.levels)[0]);
-    excursion_ = excursion_of(a, all.nu, all.lost);
-    uncorrected_ = excursion_of(a, all.uncorrected, all.uncorrected_lost);
-    occupation_ = std::move(all.nu);
-    uncorrected_occupation_ = std::move(all.uncorrected);
-    return;
-  }
-  const std::vector<int> levels = process().starts();
-  const std::vector<Occupation> occupations = from(levels);
-  std::vector<Excursion> corrected, uncorrected;
-  for (const Occupation& o : occupations) {
-    corrected.push_back(excursion_of(a, o.nu, o.lost));
-    uncorrected.push_back(excursion_of(a, o.uncorrected, o.uncorrected_lost));
-  }
-  const auto mean = [&](const Starts& starts, linalg::VecHandle Occupation::*nu) {
-    linalg::VecHandle sum = a.zeros();
-    for (std::size_t t = 0; t < starts.size(); ++t) {
-      linalg::check(VecAXPY(sum, starts.shares[t], occupations[t].*nu));
-    }
-    return sum;
-  };
-  starts_ = chain_of_starts(process(), levels, corrected);
-  excursion_ = joined(process(), starts_, corrected);
-  occupation_ = mean(starts_, &Occupation::nu);
-  const Starts before = chain_of_starts(process(), levels, uncorrected);
-  uncorrected_ = joined(process(), before, uncorrected);
-  uncorrected_occupation_ = mean(before, &Occupation::uncorrected);
+  starts_ = follow(&linalg::Solution::x, excursion_, occupation_);
+  (void)follow(&linalg::Solution::correction, uncorrected_, uncorrected_occupation_);
 }
 
 // Sliding phases that end with V > 0 on level i, and with V < 0 on level -i in symmetry-reduced
@@ -201,7 +185,7 @@ void StationaryDistribution::append_from(const FunctionOfExcursion& append,
 std::vector<Uncertain> StationaryDistribution::entry() const {
   const auto &p = excursion_.entry, &before = uncorrected_.entry;
   std::vector<Uncertain> entry;
-  for (std::size_t n = 0; n < p.size(); ++n) entry.push_back({p[n], std::abs(p[n] - before[n])});
+  for (std::size_t n = 0; n < p.size(); ++n) entry.push_back(changed_from(before[n], p[n]));
   return entry;
 }
 
@@ -211,26 +195,6 @@ linalg::VecHandle StationaryDistribution::starts_on(const KolmogorovOperator& a)
     linalg::check(VecAXPY(g, starts_.shares[t], a.trace_at_start(starts_.levels[t])));
   }
   return g;
-}
-
-// All operators that keep the same branches list the sliding states of a rank in the same order.
-linalg::VecHandle StationaryDistribution::occupation_on(const KolmogorovOperator& a) const {
-  linalg::VecHandle all = a.zeros();
-  linalg::WriteView local(all);
-  const linalg::ReadView nu(occupation_);
-  const auto& stick = excursion_.stick_time;
-  const int lowest = process().lowest_static();
-  const bool both = a.states().symmetry_reduced();
-  PetscInt at = 0, sliding = 0;
-  a.states().for_each_local([&](const State& state) {
-    if (state.kind != StateKind::static_phase) {
-      local[at++] = nu[sliding++];
-    } else {
-      const double here = stick[state.noise - lowest];
-      local[at++] = both && state.noise != 0 ? here + stick[-state.noise - lowest] : here;
-    }
-  });
-  return all;
 }
 
 StationaryDistribution::Velocity

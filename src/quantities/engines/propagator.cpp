@@ -234,7 +234,7 @@ class Search {
   void verify(std::size_t point) {
     const Complex z = questions_.points[point];
     truths_.push_back(model_.truth(z, std::abs(z) >= questions_.far));
-    if (truths_.size() > 1) truths_[truths_.size() - 2].factors.reset();
+    if (truths_.size() > 1) truths_[truths_.size() - 2].inverse = nullptr;
     estimate();
   }
 
@@ -268,7 +268,7 @@ class Search {
     const Complex z = questions_.points[point];
     const auto truth = std::find_if(truths_.begin(), truths_.end(),
                                     [z](const Truth& known) { return known.z == z; });
-    if (truth->factors == nullptr) *truth = model_.truth(z, truth->far);
+    if (truth->inverse == nullptr) *truth = model_.truth(z, truth->far);
     if (model_.interpolate(*truth) == 0) return false;
     recipe_.steps.push_back({z, 0});
     judge();

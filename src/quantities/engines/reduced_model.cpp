@@ -24,15 +24,11 @@ ProcessPencil::ProcessPencil(generator::Systems& systems, generator::Symmetry sy
       a_(generator::assemble(systems.comm(), systems.discretisation(), 0, symmetry, static_phase,
                              systems.statistics())) {
   if (clock == Clock::time) return;
-  root_ = a_.zeros();
-  inverse_root_ = a_.zeros();
-  linalg::WriteView root(root_), inverse(inverse_root_);
-  PetscInt at = 0;
-  a_.states().for_each_local([&](const generator::State& state) {
-    const double rate = rate_of(clock, state, *systems.discretisation().velocities);
-    root[at] = std::sqrt(rate);
-    inverse[at++] = 1 / std::sqrt(rate);
-  });
+  const auto root = [&](const generator::State& state) {
+    return std::sqrt(rate_of(clock, state, *systems.discretisation().velocities));
+  };
+  root_ = a_.by_state(root);
+  inverse_root_ = a_.by_state([&](const generator::State& state) { return 1 / root(state); });
 }
 
 ProcessPencil::~ProcessPencil() {
@@ -65,30 +61,19 @@ void ProcessPencil::solve(double z, Vec b, Vec x, bool transposed, bool refined)
   by_clock(1, x);
 }
 
-class ProcessPencil::Shifted final : public ShiftedPencil {
- public:
-  Shifted(const ProcessPencil& pencil, std::complex<double> z)
-      : pencil_(pencil), solver_(pencil.a_, {z, pencil.key_.clock}, pencil.systems_.statistics()) {}
-
-  [[nodiscard]] generator::ComplexVector solve(const generator::ComplexVector& b,
-                                               bool transposed) override {
-    generator::ComplexVector scaled{linalg::copy_of(b.real), linalg::copy_of(b.imaginary)};
-    const auto by_clock = [this](const generator::ComplexVector& x) {
-      for (Vec part : {Vec(x.real), Vec(x.imaginary)}) pencil_.by_clock(1, part);
+ShiftedInverse ProcessPencil::shifted(std::complex<double> z) {
+  const auto solver = std::make_shared<generator::ComplexSolver>(
+      a_, generator::Shift<std::complex<double>>(z, key_.clock), systems_.statistics());
+  return [this, solver](const generator::ComplexVector& b, bool transposed) {
+    const auto scale = [this](const generator::ComplexVector& x) {
+      for (Vec part : {Vec(x.real), Vec(x.imaginary)}) by_clock(1, part);
     };
-    by_clock(scaled);
-    auto solution = solver_.solve(scaled, transposed);
-    by_clock(solution.x);
-    return std::move(solution.x);
-  }
-
- private:
-  const ProcessPencil& pencil_;
-  generator::ComplexSolver solver_;
-};
-
-std::unique_ptr<ShiftedPencil> ProcessPencil::shifted(std::complex<double> z) {
-  return std::make_unique<Shifted>(*this, z);
+    const generator::ComplexVector scaled{copy_of(b.real), copy_of(b.imaginary)};
+    scale(scaled);
+    generator::ComplexVector x = solver->solve(scaled, transposed).x;
+    scale(x);
+    return x;
+  };
 }
 
 namespace {
@@ -167,15 +152,11 @@ Matrix<double> local_rows(BV basis, int size) {
   return rows;
 }
 
-void sum(MPI_Comm comm, std::vector<double>& x) {
-  MPI_Allreduce(MPI_IN_PLACE, x.data(), static_cast<int>(x.size()), MPI_DOUBLE, MPI_SUM, comm);
-}
-
 // X^T y, over all ranks.
 std::vector<double> products(MPI_Comm comm, const Matrix<double>& x, const double* y) {
   std::vector<double> dots(static_cast<std::size_t>(x.columns()), 0.0);
   linalg::add_product(x, y, dots.data(), true);
-  sum(comm, dots);
+  linalg::sum_over_ranks(comm, dots);
   return dots;
 }
 
@@ -206,7 +187,7 @@ Residual::Residual(BV basis, BV image, int size, Vec end)
       const double* column = left.column(c);
       squares[c] = std::inner_product(column, column + left.rows(), column, 0.0);
     }
-    sum(comm, squares);
+    linalg::sum_over_ranks(comm, squares);
     const auto pivot = std::max_element(squares.begin(), squares.end());
     largest = std::max(largest, *pivot);
     if (!(*pivot > rounding * rounding * largest)) break;
@@ -311,14 +292,14 @@ int ReducedModel::extend(double shift, int count) {
 }
 
 // (z + A)^-1 of a real vector, or the transpose, both scaled like V or W.
-generator::ComplexVector ReducedModel::shifted(ShiftedPencil& factors, Vec real,
+generator::ComplexVector ReducedModel::shifted(const ShiftedInverse& inverse, Vec real,
                                                bool transposed) const {
   const linalg::VecHandle before = transposed ? copy_of(root_) : copy_of(inverse_root_);
   const Vec after = transposed ? inverse_root_ : root_;
   generator::ComplexVector b{copy_of(real), copy_of(real)};
   check(VecPointwiseMult(b.real, real, before));
   check(VecSet(b.imaginary, 0));
-  generator::ComplexVector x = factors.solve(b, transposed);
+  generator::ComplexVector x = inverse(b, transposed);
   for (Vec part : {Vec(x.real), Vec(x.imaginary)}) check(VecPointwiseMult(part, part, after));
   return x;
 }
@@ -333,8 +314,8 @@ Truth ReducedModel::truth(std::complex<double> z, bool far) const {
     check(VecSet(found.x.imaginary, 0));
     resolve(z.real(), found.x.real, false, true);
   } else {
-    found.factors = pencil_.shifted(z);
-    found.x = shifted(*found.factors, b, false);
+    found.inverse = pencil_.shifted(z);
+    found.x = shifted(found.inverse, b, false);
   }
   found.value = generator::dot(far ? ca_ : c_, found.x);
   return found;
@@ -346,7 +327,7 @@ int ReducedModel::interpolate(const Truth& truth) {
     resolve(truth.z.real(), w, true, true);
     return append(truth.x.real, w) ? 1 : 0;
   }
-  const auto w = shifted(*truth.factors, c_, true);
+  const auto w = shifted(truth.inverse, c_, true);
   int added = append(truth.x.real, w.real) ? 1 : 0;
   if (append(truth.x.imaginary, w.imaginary)) ++added;
   return added;

@@ -12,9 +12,19 @@
 #include "stickslip/model/observable.hpp"
 #include "stickslip/quantities/excursion.hpp"
 #include "stickslip/quantities/plan.hpp"
-#include "stickslip/quantities/values.hpp"
 
 namespace stickslip::quantities {
+
+using ByLevel = std::vector<double>;  ///< of static levels, from the lowest up
+
+/// functional . solution, with the effect of iterative refinement as its rounding. Collective.
+[[nodiscard]] Uncertain value_of(Vec functional, const linalg::Solution& solution);
+
+/// Values of sliding states, in the order in which all operators that keep the same branches list
+/// them, and of those static states that an operator has: symmetry-reduced, i and -i at rest are
+/// one. Collective.
+[[nodiscard]] linalg::VecHandle on_states_of(const generator::KolmogorovOperator& a, Vec sliding,
+                                             const ByLevel& at_rest);
 
 // The stationary distribution from one transposed solve with the sliding operator.
 
@@ -74,9 +84,10 @@ class StationaryDistribution {
   /// The same before iterative refinement.
   [[nodiscard]] Vec uncorrected_occupation() const { return uncorrected_occupation_; }
 
-  /// Time spent per excursion in each state of any operator, its static states too, if it has any:
-  /// symmetry-reduced, i and -i at rest are counted together [time]. Collective.
-  [[nodiscard]] linalg::VecHandle occupation_on(const generator::KolmogorovOperator& a) const;
+  /// Time spent per excursion in each state of any operator [time]. Collective.
+  [[nodiscard]] linalg::VecHandle occupation_on(const generator::KolmogorovOperator& a) const {
+    return on_states_of(a, occupation_, excursion_.stick_time);
+  }
   /// About the same, but positive everywhere: a weight for ReducedModel. Collective.
   [[nodiscard]] linalg::VecHandle weight_on(const generator::KolmogorovOperator& a) const;
 
@@ -111,8 +122,6 @@ class StationaryDistribution {
 void append_averages(const StationaryDistribution& distribution,
                      const generator::KolmogorovOperator& a,
                      const std::vector<model::Observable>& observables, Results& results);
-
-using ByLevel = std::vector<double>;  ///< of static levels, from the lowest up
 
 /// Where sticking phases lead; nothing of a body that never rests.
 struct StickingPhases {

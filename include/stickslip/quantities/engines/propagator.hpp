@@ -16,26 +16,15 @@
 #include "stickslip/linalg/dense.hpp"
 #include "stickslip/linalg/vectors.hpp"
 #include "stickslip/quantities/plan.hpp"
-#include "stickslip/quantities/values.hpp"
 
 namespace stickslip::quantities {
 
 // Linear evolution equations of which reduced models are made.
 
-/// (z + A)^-1 at one complex z. Collective.
-class ShiftedPencil {
- public:
-  virtual ~ShiftedPencil() = default;
-  /// x = (z + A)^-1 b, or with the transpose (no conjugation), after iterative refinement. Throws
-  /// NotReached.
-  [[nodiscard]] virtual generator::ComplexVector solve(const generator::ComplexVector& b,
-                                                       bool transposed) = 0;
-
- protected:
-  ShiftedPencil() = default;
-  ShiftedPencil(const ShiftedPencil&) = default;
-  ShiftedPencil& operator=(const ShiftedPencil&) = default;
-};
+/// (z + A)^-1 b at one complex z, or with the transpose (no conjugation), after iterative
+/// refinement, by factors that it holds. Collective. Throws NotReached.
+using ShiftedInverse =
+    std::function<generator::ComplexVector(const generator::ComplexVector& b, bool transposed)>;
 
 /// u' = -A u on discrete states: c (z + A)^-1 b is the Laplace transform of c exp(-A t) b. All
 /// members are collective.
@@ -49,7 +38,7 @@ class Pencil {
   virtual void solve(double z, Vec b, Vec x, bool transposed, bool refined) = 0;
   /// Factors of z + A for a complex z, at three to four times the cost of real ones; they must not
   /// outlive the pencil. Throws NoMemory or NotReached.
-  [[nodiscard]] virtual std::unique_ptr<ShiftedPencil> shifted(std::complex<double> z) = 0;
+  [[nodiscard]] virtual ShiftedInverse shifted(std::complex<double> z) = 0;
 
  protected:
   Pencil() = default;
@@ -76,11 +65,9 @@ class ProcessPencil final : public Pencil {
 
   void multiply(Vec x, Vec y, bool transposed) const override;
   void solve(double z, Vec b, Vec x, bool transposed, bool refined) override;
-  [[nodiscard]] std::unique_ptr<ShiftedPencil> shifted(std::complex<double> z) override;
+  [[nodiscard]] ShiftedInverse shifted(std::complex<double> z) override;
 
  private:
-  class Shifted;
-
   generator::Systems& systems_;
   generator::SystemKey key_;
   generator::KolmogorovOperator a_;
@@ -109,8 +96,8 @@ struct Truth {
   /// expansion in 1/z and keeps its digits however large z is.
   std::complex<double> value;
   bool far = false;
-  generator::ComplexVector x;              ///< the solution, scaled like V
-  std::unique_ptr<ShiftedPencil> factors;  ///< none for real z
+  generator::ComplexVector x;  ///< the solution, scaled like V
+  ShiftedInverse inverse;      ///< none for real z
 };
 
 /// Size of b - (z + A) V y in the norm of a basis V that is orthonormal: with A V = V T + Q R and b
@@ -175,7 +162,7 @@ class ReducedModel {
   bool append(Vec v, Vec w);
   void multiply(Vec x, Vec y, bool transposed) const;
   void resolve(double shift, Vec x, bool transposed, bool refined) const;
-  [[nodiscard]] generator::ComplexVector shifted(ShiftedPencil& factors, Vec real,
+  [[nodiscard]] generator::ComplexVector shifted(const ShiftedInverse& inverse, Vec real,
                                                  bool transposed) const;
 
   Pencil& pencil_;
