@@ -128,30 +128,6 @@ DurationMoments duration_moments(generator::Systems& systems,
           s2 + 2.0 * st + stick_square - excursion * excursion};
 }
 
-void append_duration_moments(const model::Process& process, const Starts& starts,
-                             const DurationMoments& moments, const std::vector<Uncertain>& entry,
-                             Results& results) {
-  const auto append = [&](const Row& row, Uncertain value) {
-    const bool there = std::any_of(results.begin(), results.end(),
-                                   [&](const Result& result) { return result.key == row.key; });
-    if (!there) results.push_back(scalar(row, value));
-  };
-  append(cases::kMeanSlide, moments.mean_slide);
-  append(cases::kMeanStick, moments.mean_stick);
-  append(cases::kMeanExcursion, moments.mean_excursion);
-  append(cases::kVarSlide, moments.var_slide);
-  append(cases::kVarStick, moments.var_stick);
-  append(cases::kVarExcursion, moments.var_excursion);
-  std::vector<double> value, error;
-  for (const auto& p : entry) {
-    value.push_back(p.value);
-    error.push_back(p.error);
-  }
-  append(cases::kFSlide0, {slide_density_at_zero(process, starts), 0});
-  append(cases::kFStick0,
-         {stick_density_at_zero(process, value), stick_density_at_zero(process, error)});
-}
-
 void append_distribution(const Row& density_row, const Row& distribution_row,
                          const std::vector<double>& abscissa, const DurationDistribution& durations,
                          Results& results) {
@@ -205,23 +181,39 @@ void phase_durations_tasks(Planner& planner) {
 
 namespace {
 
-std::vector<double> stick_duration_transforms(const model::Process& process, double lambda) {
-  return generator::StaticChain::of(process, lambda).exit_transform();
-}
-
+// Those that are not there already.
 void find_duration_moments(Computation& computation) {
   const auto& distribution = computation.distribution();
   const auto entry = distribution.entry();
   const auto moments = duration_moments(computation.systems, distribution, entry);
-  append_duration_moments(computation.process(), distribution.starts(), moments, entry,
-                          computation.results());
+  const auto& process = computation.process();
+  auto& results = computation.results();
+  const auto append = [&](const Row& row, Uncertain value) {
+    const bool there = std::any_of(results.begin(), results.end(),
+                                   [&](const Result& result) { return result.key == row.key; });
+    if (!there) results.push_back(scalar(row, value));
+  };
+  append(cases::kMeanSlide, moments.mean_slide);
+  append(cases::kMeanStick, moments.mean_stick);
+  append(cases::kMeanExcursion, moments.mean_excursion);
+  append(cases::kVarSlide, moments.var_slide);
+  append(cases::kVarStick, moments.var_stick);
+  append(cases::kVarExcursion, moments.var_excursion);
+  std::vector<double> value, error;
+  for (const auto& p : entry) {
+    value.push_back(p.value);
+    error.push_back(p.error);
+  }
+  append(cases::kFSlide0, {slide_density_at_zero(process, distribution.starts()), 0});
+  append(cases::kFStick0,
+         {stick_density_at_zero(process, value), stick_density_at_zero(process, error)});
 }
 
 }  // namespace
 
 Uncertain stick_transform(const model::Process& process, double lambda,
                           const std::vector<Uncertain>& entry) {
-  const auto sticking = stick_duration_transforms(process, lambda);
+  const auto sticking = generator::StaticChain::of(process, lambda).exit_transform();
   Uncertain sum;
   for (std::size_t n = 0; n < sticking.size(); ++n) sum = sum + sticking[n] * entry[n];
   return sum;
@@ -243,16 +235,17 @@ void stick_transform_tasks(Planner& planner) {
                }});
 }
 
-SlidingTransforms sliding_transforms(generator::Systems& systems,
-                                     const StationaryDistribution& distribution, double lambda) {
-  const auto sticking = stick_duration_transforms(systems.process(), lambda);
+DurationTransforms duration_transforms(generator::Systems& systems,
+                                       const StationaryDistribution& distribution, double lambda) {
+  const auto sticking = generator::StaticChain::of(systems.process(), lambda).exit_transform();
   auto& system = systems.at(lambda, generator::symmetry_of(systems.process()));
   const linalg::VecHandle starts = distribution.starts_on(system.a());
   const auto transform = [&](const std::vector<double>& values) {
     const std::vector<PetscScalar> s(values.begin(), values.end());
     return value_of(starts, system.factors().solve(system.a().from_static(s)));
   };
-  return {transform(std::vector<double>(sticking.size(), 1.0)), transform(sticking)};
+  return {transform(std::vector<double>(sticking.size(), 1.0)),
+          stick_transform(systems.process(), lambda, distribution.entry()), transform(sticking)};
 }
 
 void append_laplace(const std::vector<double>& lambda,
@@ -277,11 +270,8 @@ void laplace_tasks(Planner& planner) {
   planner.add_at_each_lambda([&](double lambda) -> Task {
     const auto find = [=](Computation& computation) {
       const DurationTransforms none{kNoValue, kNoValue, kNoValue};
-      found->push_back(computation.value_or(none, [&]() -> DurationTransforms {
-        const auto& distribution = computation.distribution();
-        const auto t = sliding_transforms(computation.systems, distribution, lambda);
-        const auto stick = stick_transform(computation.process(), lambda, distribution.entry());
-        return {t.slide, stick, t.excursion};
+      found->push_back(computation.value_or(none, [&] {
+        return duration_transforms(computation.systems, computation.distribution(), lambda);
       }));
     };
     return {fmt::format("Laplace transforms at lambda = {:g}", lambda),

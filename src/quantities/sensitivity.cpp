@@ -78,13 +78,42 @@ ByTau static_phase_by_tau(const model::Process& process, const std::vector<doubl
   return sum;
 }
 
-}  // namespace
+/// The derivatives by all parameters.
+class Sensitivity {
+ public:
+  /// Solves for the durations.
+  Sensitivity(generator::Systems& systems, const StationaryDistribution& distribution,
+              const std::vector<model::Derivative>& parameters);
+
+  void append_sticking(Results& results) const;
+  void append_moments(Results& results) const;
+
+ private:
+  /// Of one mean, by parameter.
+  using Gradient = std::vector<Uncertain>;
+
+  [[nodiscard]] Gradient sliding_mean(const generator::KolmogorovOperator::Observable& f) const;
+  [[nodiscard]] Gradient sticking_mean() const;
+  [[nodiscard]] std::vector<double> worth_of_starts(const linalg::Solution& h) const;
+  // nu dL (h, s) by parameter, and what the starts change.
+  [[nodiscard]] Gradient through(linalg::Solution h, const std::vector<double>& s) const;
+  // value and mean of an integral over an excursion: the derivative of its ratio to mean_excursion.
+  [[nodiscard]] Gradient ratio(double mean, const Gradient& of_mean) const;
+  void append(const Row& row, const Gradient& gradient, Results& results) const;
+
+  generator::System& system_;
+  const StationaryDistribution& distribution_;
+  const std::vector<model::Derivative>& parameters_;
+  std::vector<std::vector<double>> exits_;  // of leaving for each start, by static level
+  std::vector<generator::KolmogorovOperator> changes_;  // dA, by parameter
+  Gradient slide_, stick_;
+};
 
 Sensitivity::Sensitivity(generator::Systems& systems, const StationaryDistribution& distribution,
-                         std::vector<model::Derivative> parameters)
+                         const std::vector<model::Derivative>& parameters)
     : system_(systems.at(0, generator::symmetry_of(systems.process()))),
       distribution_(distribution),
-      parameters_(std::move(parameters)) {
+      parameters_(parameters) {
   const auto chain = generator::StaticChain::of(systems.process());
   for (int start : distribution.starts().levels) exits_.push_back(chain.exit_transform_to(start));
   const Symmetry symmetry = generator::symmetry_of(systems.process());
@@ -223,6 +252,16 @@ void Sensitivity::append_moments(Results& results) const {
   }
 }
 
+}  // namespace
+
+void append_sensitivity(generator::Systems& systems, const StationaryDistribution& distribution,
+                        const std::vector<model::Derivative>& parameters, bool sticking,
+                        bool moments, Results& results) {
+  const Sensitivity sensitivity(systems, distribution, parameters);
+  if (sticking) sensitivity.append_sticking(results);
+  if (moments) sensitivity.append_moments(results);
+}
+
 // Weights w_i = prod_{j <= i} alpha_{j-1}/(1 - alpha_j), so that d log w_i/d tau is a sum of
 // negative terms; a mean changes by its covariance with that score.
 void append_noise_sensitivity(const model::Process& process, Results& results) {
@@ -288,9 +327,8 @@ void sensitivity_tasks(Planner& planner) {
             adjoints = means * (planner.starts() > 1 ? 2 : 1);
   const auto parameters = effects::derivatives_of(scene);
   const auto find = [=](Computation& computation) {
-    const Sensitivity sensitivity(computation.systems, computation.distribution(), parameters);
-    if (sticking) sensitivity.append_sticking(computation.results());
-    if (moments) sensitivity.append_moments(computation.results());
+    append_sensitivity(computation.systems, computation.distribution(), parameters, sticking,
+                       moments, computation.results());
     set_scales(computation.problem.given.scene, parameters, computation.results());
   };
   planner.add({"sensitivity",

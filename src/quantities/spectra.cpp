@@ -258,19 +258,6 @@ std::vector<Uncertain> direct_spectrum(generator::Systems& systems,
   return values;
 }
 
-void append_spectrum(const std::vector<double>& omega, const Spectrum& spectrum, Results& results) {
-  if (!omega.empty()) append_array(array(cases::kSV, omega), spectrum.value, results);
-  results.push_back(scalar(cases::kS0, spectrum.at_zero));
-  results.push_back(scalar(cases::kDiffusivity, 0.5 * spectrum.at_zero));
-}
-
-void append_shape(const SpectrumShape& shape, Results& results) {
-  results.push_back(scalar(cases::kFullWidth, shape.full_width));
-  results.push_back(scalar(cases::kCorrelationTime, Uncertain{1, 0} / shape.full_width));
-  results.push_back(scalar(cases::kVarianceFromSpectrum, shape.variance));
-  results.back().diagnostic = true;
-}
-
 namespace {
 
 // Puts values at the frequencies of waves, each found on elements of its own, between the others.
@@ -317,9 +304,16 @@ void find_spectrum(Computation& computation, bool direct) {
     reduced = reduced_spectrum(computation.systems, distribution, smooth, computation.tolerance());
   }
   put_waves(computation, spectrum);
-  append_spectrum(omega, spectrum, computation.results());
+  auto& results = computation.results();
+  if (!omega.empty()) append_array(array(cases::kSV, omega), spectrum.value, results);
+  results.push_back(scalar(cases::kS0, spectrum.at_zero));
+  results.push_back(scalar(cases::kDiffusivity, 0.5 * spectrum.at_zero));
   if (direct) return;
-  append_shape(reduced.shape, computation.results());
+  const auto& [full_width, variance] = reduced.shape;
+  results.push_back(scalar(cases::kFullWidth, full_width));
+  results.push_back(scalar(cases::kCorrelationTime, Uncertain{1, 0} / full_width));
+  results.push_back(scalar(cases::kVarianceFromSpectrum, variance));
+  results.back().diagnostic = true;
   computation.report("krylov_pairs", reduced.pairs,
                      "pairs of Krylov vectors in the reduced model of the spectrum");
   computation.report("krylov_shifts", static_cast<double>(reduced.shifts.size()),

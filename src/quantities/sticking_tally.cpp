@@ -1,7 +1,7 @@
 #include <cmath>
 #include <optional>
 
-#include "observed_phases.hpp"
+#include "stickslip/case/spectrum_rows.hpp"
 #include "stickslip/case/sticking_rows.hpp"
 #include "stickslip/simulation/tally.hpp"
 
@@ -42,25 +42,34 @@ void moments_tally(Tally& tally) {
   tally.over_time(cases::kEXP, &Excursion::place_noise);
 }
 
+namespace {
+
+// Integrals of an observable over the phases of an excursion, and their durations.
+struct ObservedPhases {
+  double slide, stick, of_slide, of_stick;
+};
+
 Sums<ObservedPhases> observe(Tally& tally, const model::Observable& f) {
   return tally.sums([place = tally.wanted().observe(f)](const Excursion& e) {
     return ObservedPhases{e.slide, e.stick, e.integrals[place].slide, e.integrals[place].stick};
   });
 }
 
+// pi(f).
 Estimate stationary_mean(const Sums<ObservedPhases>& sums) {
   return sums.over_time(sums.overall(&ObservedPhases::of_slide) +
                         sums.overall(&ObservedPhases::of_stick));
 }
 
+// Where all samples of f agree they may have missed what is rare: no interval is narrower than that
+// of an event that as many samples miss with probability 0.025. What symmetry makes zero is exactly
+// zero.
 Estimate widened(const Tally& tally, const model::Observable& f, const Estimate& e) {
   const bool odd = tally.process().symmetric() && f.least == -f.most;
   if (e.low < e.high || odd || !std::isfinite(f.most - f.least)) return e;
   const double missed = -std::log(0.025) / tally.samples();
   return {e.value, e.low - missed * (e.value - f.least), e.high + missed * (f.most - e.value)};
 }
-
-namespace {
 
 struct Paths {
   double slide, stick, path, drift;
@@ -81,7 +90,36 @@ void average(Tally& tally, std::size_t n) {
   });
 }
 
+void expectation_of(Tally& tally, std::size_t n) {
+  struct Value {
+    double weight, of_f;
+  };
+  const auto& f = tally.question().observables[n];
+  const auto stationary = observe(tally, f);
+  const auto& start = tally.question().start;
+  const bool even = tally.process().symmetric() && start.kind == model::Start::Kind::stationary;
+  const auto sums = tally.sums_along(start, [f, even](const FollowedPath& path, const State& z) {
+    const double value = even ? f.even(z.x, z.y, z.v) : f(z.x, z.y, z.v);
+    return Value{path.weight, path.weight * value};
+  });
+  tally.report([=](const Tally& t) -> Estimates {
+    const auto& of = t.question().observables[n];
+    const auto mean = [&](std::size_t at) {
+      const auto& m = sums[at];
+      const Estimate e = m.estimate(m.overall(&Value::of_f) / m.overall(&Value::weight));
+      return widened(t, of, e);
+    };
+    const Estimate in_the_end = widened(t, of, stationary_mean(stationary));
+    return {array(cases::kExpectationOf, t.question().time, mean, &of),
+            {&cases::kStationaryOf, {in_the_end}, {}, &of}};
+  });
+}
+
 }  // namespace
+
+void expectation_tally(Tally& tally) {
+  for (std::size_t n = 0; n < tally.question().observables.size(); ++n) expectation_of(tally, n);
+}
 
 void averages_tally(Tally& tally) {
   for (std::size_t n = 0; n < tally.question().observables.size(); ++n) average(tally, n);

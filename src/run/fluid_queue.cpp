@@ -7,13 +7,11 @@
 #include <optional>
 #include <stdexcept>
 
-#include "routes.hpp"
 #include "stickslip/base/errors.hpp"
 #include "stickslip/case/sticking_rows.hpp"
 #include "stickslip/generator/static_chain.hpp"
 #include "stickslip/linalg/dense.hpp"
 #include "stickslip/quantities/durations.hpp"
-#include "stickslip/quantities/excursion.hpp"
 
 namespace stickslip::run {
 namespace {
@@ -201,11 +199,11 @@ class Queue {
     std::vector<double> moment(phases_.rising.size(), 0.0);
     for (int s = 0; s < starts(); ++s) moment[row(s)] = number[s];
     double factorial = 1;
-    for (auto* sums : {&slide.time, &slide.distance, &slide.square}) {
+    for (auto* sums : {&slide.slide_time, &slide.slide_distance, &slide.slide_square}) {
       minus_k_.solve(moment, true);
       spend(phases_.rising, moment, factorial, &(*sums)[first]);
       spend(phases_.falling, moment * psi_, factorial, &(*sums)[first]);
-      factorial *= sums == &slide.time ? 1 : 2;
+      factorial *= sums == &slide.slide_time ? 1 : 2;
     }
   }
 
@@ -257,7 +255,7 @@ class Boundary {
     number[level >= first ? level - first : upper_.starts() + lowest - 1 - level] = 1;
     factors_.solve(number, true);
     SlidingMeans slide;
-    for (auto* sums : {&slide.time, &slide.distance, &slide.square}) {
+    for (auto* sums : {&slide.slide_time, &slide.slide_distance, &slide.slide_square}) {
       sums->assign(sums_of_both, 0.0);
     }
     slide.entry = number * to_static_;
@@ -320,12 +318,9 @@ double sum(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0);
 }
 
-Excursion excursion_of(const model::Process& process, const SlidingMeans& slide) {
-  Excursion e;
-  e.slide_time = slide.time;
-  e.slide_distance = slide.distance;
-  e.slide_square = slide.square;
-  e.entry = e.entry_plus = slide.entry;
+// With the sticking phase that follows.
+Excursion excursion_of(const model::Process& process, Excursion e) {
+  e.entry_plus = e.entry;
   e.lost_probability = sum(e.entry) - 1;
   e.stick_time = generator::StaticChain::of(process).occupation(e.entry);
   return e;

@@ -1,4 +1,4 @@
-#include "routes.hpp"
+#include "stickslip/run/fluid_queue.hpp"
 
 #include <fmt/format.h>
 
@@ -33,35 +33,18 @@ using quantities::Kind;
 using quantities::scalar;
 using quantities::Uncertain;
 
-struct Computation {
-  Route route;
-  Evaluation (*evaluate)(const Problem&);
-};
-
-// All methods that have a discretisation.
-constexpr Computation kComputations[] = {{Route::excursion, by_excursion},
-                                         {Route::lambda, by_lambda},
-                                         {Route::hitting, by_hitting},
-                                         {Route::null_vector, by_null_vector},
-                                         {Route::fluid_queue, by_fluid_queue}};
-
-}  // namespace
-
-Evaluation evaluate(const Problem& problem) {
-  for (const auto& [route, evaluate_by] : kComputations) {
-    if (route == problem.given.method.route) return evaluate_by(problem);
-  }
-  throw std::logic_error(
-      fmt::format("-route {} works on no discretisation", problem.given.method.row().word));
-}
-
-namespace {
-
 // Numbers of those that are not always results; those of the phases are there for others, too.
 constexpr int kBeyond = 0, kStick = 1, kSlide = 2;
 
-}  // namespace
+// Stationary averages pi(f) behind sticking, moments, noise_law and averages, for solution methods
+// that compute pi(f) for one f after the other.
+struct Average {
+  quantities::Result result;  // blank
+  model::Observable::Function f;
+  int given = -1;  // number of the average that it is divided by, of a phase; -1: none
+};
 
+// Those that are asked for, after the probability of the levels on which a body always moves.
 std::vector<Average> averages(const Problem& problem) {
   const cases::Question& question = problem.given.question;
   const auto& process = problem.discretisation.process;
@@ -108,6 +91,8 @@ std::vector<Average> averages(const Problem& problem) {
   return all;
 }
 
+}  // namespace
+
 void append_averages(const Problem& problem, const std::vector<Uncertain>& values,
                      quantities::Results& results) {
   const auto all = averages(problem);
@@ -131,6 +116,9 @@ void append_averages(const Problem& problem, const std::vector<Uncertain>& value
   }
 }
 
+namespace {
+
+// Everything from the sliding operator and the static chain, task by task.
 Evaluation by_excursion(const Problem& problem) {
   Evaluation evaluation;
   generator::Systems systems(problem.comm, problem.discretisation, problem.statistics);
@@ -159,13 +147,6 @@ Evaluation by_excursion(const Problem& problem) {
   }
   return evaluation;
 }
-
-linalg::Analysis analyse(const Problem& problem, const generator::SystemKey& key) {
-  generator::Systems systems(problem.comm, problem.discretisation, problem.statistics);
-  return systems.analyse(key);
-}
-
-namespace {
 
 constexpr int kMostTrials = 8, kMostMeans = 4;
 // In units of 1/tau: where rounding does not rule yet in any case tried, and where it always does.
@@ -283,8 +264,16 @@ class Search {
   double smaller_ = 0;   // the next smaller one, 0 if there is none
 };
 
-}  // namespace
-
+// pi(f) = lambda u_lambda(s+; f) + O(lambda) with (lambda - M) u_lambda = f on the full grid; one
+// factorisation for all f.
+//
+// With R = (lambda - M)^-1 a single solve loses rounding/lambda. Since lambda R 1 = 1, the number
+// lambda R f at s+ also is the c for which R(f - c) = 0 there; found by c <- c + lambda R(f - c),
+// whose solutions stay of order one, it keeps all digits for any lambda well above the rounding of
+// the diagonal of M. The bias is measured: (lambda R)^2 f differs from pi(f) by O(lambda^2) only,
+// so that lambda R f - (lambda R)^2 f is the bias up to O(lambda^2). Unless -lambda fixes it,
+// lambda starts at accuracy/100 (of 1/tau) and is lowered until the bias is below a quarter of the
+// accuracy, or as far as rounding lets the whole error fall.
 Evaluation by_lambda(const Problem& problem) {
   const auto& fixed = problem.given.question.lambda;
   Trial best = fixed.empty() ? Search(problem).run() : average_at(problem, fixed[0]);
@@ -295,8 +284,6 @@ Evaluation by_lambda(const Problem& problem) {
                         "largest relative bias of an average from lambda > 0"}};
   return evaluation;
 }
-
-namespace {
 
 /// Means by the levels from which excursions start.
 using Means = std::vector<Uncertain>;
@@ -345,9 +332,9 @@ class Hitting {
   generator::System& system_;
 };
 
-}  // namespace
-
-// From the edges on the static chain alone decides.
+// P_slide = R^(s+)/(R-check(s+) + R(x_k)) of Prop. 4.1: mean times to rest, to the edge of rest,
+// and from there to the exit, on the full grid and by the static chain, which alone decides from
+// the edges on.
 Evaluation by_hitting(const Problem& problem) {
   const auto& process = problem.discretisation.process;
   const auto chain = generator::StaticChain::of(process);
@@ -383,8 +370,6 @@ Evaluation by_hitting(const Problem& problem) {
       {"R", leaving.value, "mean time from rest on such a level to the onset of sliding"}};
   return evaluation;
 }
-
-namespace {
 
 // Prefix of the PETSc options of this eigensolver.
 constexpr const char* kNullPrefix = "null_";
@@ -447,8 +432,7 @@ void append_durations(Uncertain excursion, quantities::Results& results) {
   results.push_back(scalar(cases::kMeanExcursion, excursion));
 }
 
-}  // namespace
-
+// pi M = 0 by SLEPc on the full grid.
 Evaluation by_null_vector(const Problem& problem) {
   const auto a = generator::assemble(problem.comm, problem.discretisation, 0, Symmetry::none,
                                      generator::StaticPhase::kept, problem.statistics);
@@ -487,6 +471,33 @@ Evaluation by_null_vector(const Problem& problem) {
        "residual of the null vector pi of the generator M"},
       {"most_negative_pi", most_negative(problem.comm, pi), "smallest entry of pi"}};
   return evaluation;
+}
+
+struct Computation {
+  Route route;
+  Evaluation (*evaluate)(const Problem&);
+};
+
+// All methods that have a discretisation.
+constexpr Computation kComputations[] = {{Route::excursion, by_excursion},
+                                         {Route::lambda, by_lambda},
+                                         {Route::hitting, by_hitting},
+                                         {Route::null_vector, by_null_vector},
+                                         {Route::fluid_queue, by_fluid_queue}};
+
+}  // namespace
+
+Evaluation evaluate(const Problem& problem) {
+  for (const auto& [route, evaluate_by] : kComputations) {
+    if (route == problem.given.method.route) return evaluate_by(problem);
+  }
+  throw std::logic_error(
+      fmt::format("-route {} works on no discretisation", problem.given.method.row().word));
+}
+
+linalg::Analysis analyse(const Problem& problem, const generator::SystemKey& key) {
+  generator::Systems systems(problem.comm, problem.discretisation, problem.statistics);
+  return systems.analyse(key);
 }
 
 }  // namespace stickslip::run

@@ -26,7 +26,7 @@ class Durations {
   [[nodiscard]] DurationTransforms at(double lambda) {
     std::vector<Uncertain> entry;
     for (double p : distribution_.excursion().entry) entry.push_back({p, 0});
-    const auto t = quantities::sliding_transforms(systems_, distribution_, lambda);
+    const auto t = quantities::duration_transforms(systems_, distribution_, lambda);
     systems_.release({lambda, generator::Symmetry::even});
     return {t.slide, quantities::stick_transform(systems_.process(), lambda, entry), t.excursion};
   }

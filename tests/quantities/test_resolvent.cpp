@@ -163,7 +163,7 @@ TEST_CASE("resolvent: an excursion ends at s+ or s-, now or later", "[parallel]"
       CHECK(exits.h_plus.value > 0);
       CHECK(exits.h_minus.value > 0);
       const double excursion =
-          quantities::sliding_transforms(made.systems, distribution, lambda).excursion.value;
+          quantities::duration_transforms(made.systems, distribution, lambda).excursion.value;
       CHECK(relative_difference(ends, excursion) < 1e-11);
     }
   }

@@ -39,11 +39,9 @@ Values scalars(const model::Scene& s) {
 
 Values derivatives(const model::Scene& s) {
   Solved solved(test::on_hp(s, kDegree));
-  const quantities::Sensitivity sensitivity(solved.systems, solved.distribution,
-                                            effects::derivatives_of(s));
   Results results;
-  sensitivity.append_sticking(results);
-  sensitivity.append_moments(results);
+  quantities::append_sensitivity(solved.systems, solved.distribution, effects::derivatives_of(s),
+                                 true, true, results);
   quantities::append_noise_sensitivity(solved.distribution.process(), results);
   return by_key(results);
 }
@@ -145,14 +143,18 @@ TEST_CASE("sensitivity: one factorisation, one solve a functional") {
   const auto s = scene(1, 0.25, 1, 0.5, {1, 0});
   Solved solved(test::on_hp(s, 4));
   const auto before = solved.statistics;
-  const quantities::Sensitivity sensitivity(solved.systems, solved.distribution,
-                                            effects::derivatives_of(s));
+  Results results;
+  const auto append = [&](bool sticking, bool moments) {
+    quantities::append_sensitivity(solved.systems, solved.distribution, effects::derivatives_of(s),
+                                   sticking, moments, results);
+  };
+  append(true, false);
   CHECK(solved.statistics.solves - before.solves == 2);
   CHECK(solved.statistics.assemblies - before.assemblies == 3);
   CHECK(solved.statistics.factorizations_real + solved.statistics.factorizations_complex == 1);
-  Results results;
-  sensitivity.append_moments(results);
-  CHECK(solved.statistics.solves - before.solves == 5);
+  results.clear();
+  append(false, true);
+  CHECK(solved.statistics.solves - before.solves == 2 + 5);
   CHECK(results.size() == 9);
 }
 

@@ -48,7 +48,8 @@ TEST_CASE("fluid queue: sliding ends, and the noise keeps its distribution beyon
     CHECK(std::abs(sum(queue.plus().entry) - 1) < 1e-11);
     // Between two exits the noise spends pi(x_i) of the time on |x_i| > mu_s: ratios are known.
     const auto distribution = model::stationary_distribution(process.noise);
-    const auto at = [&](int i) { return queue.plus().time[32 + i] + queue.plus().time[32 - i]; };
+    const auto& time = queue.plus().slide_time;
+    const auto at = [&](int i) { return time[32 + i] + time[32 - i]; };
     for (int i = 6; i <= 20; ++i) {
       CHECK(relative_difference(at(i) / at(5), distribution[32 + i] / distribution[37]) < 1e-10);
     }

@@ -4,7 +4,6 @@
 #include <set>
 #include <string_view>
 
-#include "../../src/run/routes.hpp"
 #include "../common/catch.hpp"
 #include "../common/near.hpp"
 #include "../common/options.hpp"

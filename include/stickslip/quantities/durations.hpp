@@ -67,12 +67,6 @@ struct DurationMoments {
                                                const StationaryDistribution& distribution,
                                                const std::vector<Uncertain>& entry);
 
-/// var_slide, var_stick, var_excursion, f_slide_0 and, unless they are there already, mean_slide,
-/// mean_stick, mean_excursion, f_stick_0.
-void append_duration_moments(const model::Process& process, const Starts& starts,
-                             const DurationMoments& moments, const std::vector<Uncertain>& entry,
-                             Results& results);
-
 /// A density and its distribution function, of the given rows, at the values of their abscissa.
 void append_distribution(const Row& density_row, const Row& distribution_row,
                          const std::vector<double>& abscissa, const DurationDistribution& durations,
@@ -97,14 +91,11 @@ void append_stick_transform(const model::Process& process, const std::vector<dou
                             const std::vector<Uncertain>& entry, Results& results);
 
 /// F_slide and F_excursion: A u = -A_us s with s = 1 (Prop. 4.3) or s = F_lambda, read where
-/// excursions start. Two solves with systems.at(lambda, even or none). Collective. lambda >= 0
-/// [1/time].
-struct SlidingTransforms {
-  Uncertain slide, excursion;
-};
-[[nodiscard]] SlidingTransforms sliding_transforms(generator::Systems& systems,
-                                                   const StationaryDistribution& distribution,
-                                                   double lambda);
+/// excursions start; F_stick as above. Two solves with systems.at(lambda, even or none).
+/// Collective. lambda >= 0 [1/time].
+[[nodiscard]] DurationTransforms duration_transforms(generator::Systems& systems,
+                                                     const StationaryDistribution& distribution,
+                                                     double lambda);
 
 /// F_slide, F_stick and F_excursion as arrays over lambda; each value counts by its own size.
 void append_laplace(const std::vector<double>& lambda,

@@ -59,11 +59,6 @@ struct ReducedSpectrum {
                                                      const StationaryDistribution& distribution,
                                                      const std::vector<double>& omega);
 
-/// S_v by omega and at 0, and the diffusivity, half of the latter.
-void append_spectrum(const std::vector<double>& omega, const Spectrum& spectrum, Results& results);
-/// The full width at half maximum, its inverse, and the variance from the spectrum.
-void append_shape(const SpectrumShape& shape, Results& results);
-
 // Discounted integrals over an excursion, and the resolvent through the representation formula.
 
 /// What excursions give whatever the observable (Prop. 3.1 of the paper).

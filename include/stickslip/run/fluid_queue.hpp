@@ -2,22 +2,17 @@
 /// b = 0: the process as a Markov-modulated fluid queue, solved without any grid in v.
 
 #include <map>
-#include <vector>
 
 #include "stickslip/model/process.hpp"
+#include "stickslip/quantities/excursion.hpp"
+#include "stickslip/run/evaluation.hpp"
 
 namespace stickslip::run {
 
-/// Means over one sliding phase, discounted by exp(-lambda t). Arrays over the noise run from the
-/// lowest level up, counted along the motion; without symmetry first for V > 0, then for V < 0.
-struct SlidingMeans {
-  std::vector<double> time;      ///< [time]
-  std::vector<double> distance;  ///< int |V| dt
-  std::vector<double> square;    ///< int V^2 dt
-  double turns = 0;              ///< changes of the sign of V
-  /// Probability that the sliding phase ends on each static level, from the lowest up; their sum is
-  /// F_slide.
-  std::vector<double> entry;
+/// Means over one sliding phase, discounted by exp(-lambda t), nothing being known of what follows.
+/// `entry` has the sum F_slide.
+struct SlidingMeans : quantities::Excursion {
+  double turns = 0;  ///< changes of the sign of V
 };
 
 /// Without drag, |V| changes at the constant rate x_i + g - mu_d on each noise level (v > 0): a
@@ -50,5 +45,8 @@ class FluidQueue {
   std::map<int, SlidingMeans> from_;
   double residual_ = 0;
 };
+
+/// The solution method of b = 0 without a grid in v.
+[[nodiscard]] Evaluation by_fluid_queue(const Problem& problem);
 
 }  // namespace stickslip::run
