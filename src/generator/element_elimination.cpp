@@ -4,12 +4,9 @@
 #include <cstdlib>
 #include <limits>
 #include <map>
-#include <memory>
 #include <optional>
 #include <span>
-#include <type_traits>
 #include <utility>
-#include <vector>
 
 #include <fmt/format.h>
 // The only private header of PETSc in this project. A PC type fills the structure of its
@@ -18,13 +15,9 @@
 #include <petsc/private/pcimpl.h>
 
 #include "branch_factors.hpp"
-#include "stickslip/base/errors.hpp"
-#include "stickslip/generator/element_system.hpp"
 #include "stickslip/generator/solver_policy.hpp"
-#include "stickslip/linalg/petsc.hpp"
 #include "stickslip/linalg/session.hpp"
 #include "stickslip/linalg/solver.hpp"
-#include "stickslip/linalg/vectors.hpp"
 
 namespace stickslip::generator {
 namespace {

@@ -6,14 +6,10 @@
 #include <cmath>
 #include <cstdlib>
 #include <map>
-#include <numeric>
 #include <utility>
 
 #include "row_assembler.hpp"
-#include "stickslip/base/errors.hpp"
-#include "stickslip/linalg/petsc.hpp"
 #include "stickslip/linalg/session.hpp"
-#include "stickslip/linalg/vectors.hpp"
 
 namespace stickslip::generator {
 namespace {
@@ -23,6 +19,39 @@ using linalg::check;
 using Shared = std::shared_ptr<const MatrixData>;
 
 constexpr const char* kName = "stickslip_data";
+
+constexpr double kRounding = 1e-12;  // of a row sum, against the diagonal
+constexpr double kNegligible = 1e-9;
+
+// Off-diagonals and their sum in one pass; the diagonal was summed in the same order.
+std::string complaint(const LocalRows& rows, PetscInt r, Promise promise) {
+  double diagonal = 0, others = 0, largest = -HUGE_VAL;  // off-diagonal: at most 0 if monotone
+  for (PetscInt n = rows.row_start[r]; n < rows.row_start[r + 1]; ++n) {
+    const double value = PetscRealPart(rows.values[n]);
+    if (rows.columns[n] == rows.first + r) {
+      diagonal = value;
+    } else {
+      others += value;
+      if (!(value <= largest)) largest = value;  // NaN is kept
+    }
+  }
+  const double sum = diagonal + others, rounding = kRounding * std::abs(diagonal);
+  if (promise.monotone && !(largest <= 0)) return fmt::format("a jump rate of {:.2g}", -largest);
+  if (promise.monotone && !(sum >= -rounding)) return fmt::format("a killing rate of {:.2g}", sum);
+  if (promise.conservative && !(std::abs(sum) <= rounding)) {
+    return fmt::format("a row sum of {:.2g}", sum);
+  }
+  return "";
+}
+
+std::string broken_promise(const LocalRows& rows, Promise promise) {
+  for (PetscInt r = 0; r + 1 < static_cast<PetscInt>(rows.row_start.size()); ++r) {
+    const bool alone = rows.row_start[r + 1] - rows.row_start[r] < 2;
+    const std::string what = alone ? "" : complaint(rows, r, promise);
+    if (!what.empty()) return fmt::format("the generator has {} in row {}", what, rows.first + r);
+  }
+  return "";
+}
 
 }  // namespace
 
@@ -44,54 +73,6 @@ Shared data_of(Mat matrix) {
   check(PetscContainerGetPointer(reinterpret_cast<PetscContainer>(found), &data));
   return *static_cast<Shared*>(data);
 }
-
-namespace {
-
-constexpr double kRounding = 1e-12;  // of a row sum, against the diagonal
-constexpr double kNegligible = 1e-9;
-
-// Off-diagonals and their sum in one pass; the diagonal was summed in the same order.
-struct Row {
-  double diagonal = 0, others = 0;
-  double largest = -HUGE_VAL;  // off-diagonal: at most 0 if monotone
-};
-
-Row read_row(const LocalRows& rows, PetscInt r) {
-  Row row;
-  for (PetscInt n = rows.row_start[r]; n < rows.row_start[r + 1]; ++n) {
-    const double value = PetscRealPart(rows.values[n]);
-    if (rows.columns[n] == rows.first + r) {
-      row.diagonal = value;
-    } else {
-      row.others += value;
-      if (!(value <= row.largest)) row.largest = value;  // NaN is kept
-    }
-  }
-  return row;
-}
-
-std::string complaint(const Row& row, Promise promise) {
-  const double sum = row.diagonal + row.others, rounding = kRounding * std::abs(row.diagonal);
-  if (promise.monotone && !(row.largest <= 0)) {
-    return fmt::format("a jump rate of {:.2g}", -row.largest);
-  }
-  if (promise.monotone && !(sum >= -rounding)) return fmt::format("a killing rate of {:.2g}", sum);
-  if (promise.conservative && !(std::abs(sum) <= rounding)) {
-    return fmt::format("a row sum of {:.2g}", sum);
-  }
-  return "";
-}
-
-std::string broken_promise(const LocalRows& rows, Promise promise) {
-  for (PetscInt r = 0; r + 1 < static_cast<PetscInt>(rows.row_start.size()); ++r) {
-    const bool alone = rows.row_start[r + 1] - rows.row_start[r] < 2;
-    const std::string what = alone ? "" : complaint(read_row(rows, r), promise);
-    if (!what.empty()) return fmt::format("the generator has {} in row {}", what, rows.first + r);
-  }
-  return "";
-}
-
-}  // namespace
 
 void require_generator(MPI_Comm comm, const LocalRows& rows, Promise promise,
                        const model::Process& process) {

@@ -6,9 +6,6 @@
 #include <limits>
 #include <stdexcept>
 
-#include "stickslip/base/text.hpp"
-#include "stickslip/linalg/dense.hpp"
-
 namespace stickslip::generator {
 namespace {
 

@@ -5,20 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <map>
-#include <memory>
-#include <string>
-#include <utility>
 #include <vector>
 
-#include "stickslip/base/errors.hpp"
 #include "stickslip/generator/element_elimination.hpp"
 #include "stickslip/generator/solver_policy.hpp"
-#include "stickslip/linalg/petsc.hpp"
 #include "stickslip/linalg/session.hpp"
-#include "stickslip/linalg/solver.hpp"
-#include "stickslip/linalg/solver_options.hpp"
-#include "stickslip/linalg/vectors.hpp"
 
 namespace stickslip::generator {
 namespace {
@@ -40,6 +31,11 @@ std::map<GroupSize, double> group_sizes(const Nodes& noise) {
     sizes[{group.count, static_cast<int>(border) / group.count}] += 1;
   }
   return sizes;
+}
+
+// Elements know of no killing in one state.
+const char* pc_type_of(const KolmogorovOperator& a) {
+  return a.kills_in_one_state() ? "lu" : default_pc_type(a.discretisation());
 }
 
 }  // namespace
@@ -150,15 +146,6 @@ KolmogorovOperator assemble(MPI_Comm comm, const Discretisation& discretisation,
   statistics += made;
   return a;
 }
-
-namespace {
-
-// Elements know of no killing in one state.
-const char* pc_type_of(const KolmogorovOperator& a) {
-  return a.kills_in_one_state() ? "lu" : default_pc_type(a.discretisation());
-}
-
-}  // namespace
 
 System::System(KolmogorovOperator a, linalg::SolverStatistics& statistics)
     : a_(std::move(a)), factors_(a_.matrix(), kSlidePrefix, statistics, pc_type_of(a_)) {}
@@ -273,7 +260,7 @@ class InRealForm {
       std::transform(imaginary.data(), imaginary.data() + imaginary.size(), next,
                      [sign](PetscScalar value) { return sign * value; });
     }
-    transposed ? factors_->solve_transposed_once(all, solved) : factors_->solve_once(all, solved);
+    factors_->solve_once(all, solved, transposed);
     const linalg::ReadView from(solved);
     linalg::WriteView real(x.real), imaginary(x.imaginary);
     std::copy_n(from.data(), real.size(), real.data());

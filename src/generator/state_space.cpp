@@ -10,7 +10,6 @@
 #include <limits>
 
 #include "stickslip/base/errors.hpp"
-#include "stickslip/generator/discretisation.hpp"
 #include "stickslip/linalg/session.hpp"
 
 namespace stickslip::generator {

@@ -10,12 +10,9 @@
 #include <numbers>
 #include <set>
 #include <utility>
-#include <vector>
-
-#include "stickslip/base/text.hpp"
-#include "stickslip/model/process.hpp"
 
 namespace stickslip::generator {
+namespace {
 
 // The white-noise bound of the density of velocities, by which elements, their degrees and the end
 // of the velocity discretisation are chosen.
@@ -52,16 +49,6 @@ struct LogDensity {
   double highest = 0;  // at v = 0
   double intensity;
 };
-
-// Elements that follow waves of a spectrum, on velocity elements. See velocity_mesh.cpp for the
-// reasons.
-
-/// The element ends with those between that the waves need; `gap` is the distance from rest down to
-/// the nearest level [force]. O(elements levels) for a table.
-[[nodiscard]] std::vector<double> split_for_waves(const model::Process& process, double omega,
-                                                  double gap, std::vector<double> ends);
-
-namespace {
 
 // Many levels damp waves much faster than the noise. Few do not, as bodies at the speed at which
 // the drag holds them all take the same time to come to rest.
@@ -124,23 +111,9 @@ double wave_width(const model::Process& process, double omega, double gap, doubl
   return 4 * std::numbers::pi * slowest / std::min(omega, highest_followed(process));
 }
 
-}  // namespace
-
-bool has_unfollowed_waves(const model::Process& process, double omega) {
-  return !damps_fast_waves(process) && omega > highest_followed(process);
-}
-
-bool has_waves(const model::Process& process, double omega) {
-  const auto& noise = process.noise;
-  double slowest = 4 * noise.rate();
-  for (int i = noise.lowest(); noise.table && i <= noise.highest(); ++i) {
-    slowest = std::min(slowest, model::change_rates(noise, i).most);
-  }
-  return omega > slowest;
-}
-
-// Splits elements that are too wide for the waves. Those of a level very near to mu_d end within
-// the first element: only the part that has them is split for them.
+// The element ends with those between that the waves need; `gap` is the distance from rest down to
+// the nearest level. Splits elements that are too wide for the waves. Those of a level very near to
+// mu_d end within the first element: only the part that has them is split for them.
 std::vector<double> split_for_waves(const model::Process& process, double omega, double gap,
                                     std::vector<double> ends) {
   const double thinnest = end_of_thinnest_waves(process, gap);
@@ -154,6 +127,21 @@ std::vector<double> split_for_waves(const model::Process& process, double omega,
     split.push_back(ends[n]);
   }
   return split;
+}
+
+}  // namespace
+
+bool has_unfollowed_waves(const model::Process& process, double omega) {
+  return !damps_fast_waves(process) && omega > highest_followed(process);
+}
+
+bool has_waves(const model::Process& process, double omega) {
+  const auto& noise = process.noise;
+  double slowest = 4 * noise.rate();
+  for (int i = noise.lowest(); noise.table && i <= noise.highest(); ++i) {
+    slowest = std::min(slowest, model::change_rates(noise, i).most);
+  }
+  return omega > slowest;
 }
 
 namespace {

@@ -1,8 +1,6 @@
 #include "stickslip/linalg/dense.hpp"
 
-#include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdlib>
 #include <numeric>
 #include <stdexcept>

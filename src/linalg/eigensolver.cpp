@@ -4,11 +4,8 @@
 
 #include <algorithm>
 
-#include "stickslip/base/errors.hpp"
-#include "stickslip/linalg/petsc.hpp"
 #include "stickslip/linalg/solver.hpp"
 #include "stickslip/linalg/solver_options.hpp"
-#include "stickslip/linalg/vectors.hpp"
 
 namespace stickslip::linalg {
 namespace {

@@ -16,10 +16,8 @@
 #include <new>
 #include <optional>
 #include <sstream>
-#include <string>
 #include <system_error>
 #include <utility>
-#include <vector>
 
 #include <dlfcn.h>
 #include <petscsys.h>

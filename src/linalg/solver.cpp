@@ -8,15 +8,8 @@
 #include <cstdarg>
 #include <cstring>
 #include <sstream>
-#include <string>
-#include <utility>
 
-#include "stickslip/base/errors.hpp"
-#include "stickslip/linalg/petsc.hpp"
 #include "stickslip/linalg/session.hpp"
-#include "stickslip/linalg/solver_options.hpp"
-#include "stickslip/linalg/solver_statistics.hpp"
-#include "stickslip/linalg/vectors.hpp"
 
 namespace stickslip::linalg {
 namespace {
@@ -71,9 +64,7 @@ VecHandle magnitude_sums(Mat matrix) {
 }
 
 VecHandle absolute(Vec x) {
-  VecHandle size;
-  check(VecDuplicate(x, size.out()));
-  check(VecCopy(x, size));
+  VecHandle size = copy_of(x);
   check(VecAbs(size));
   return size;
 }
@@ -268,6 +259,20 @@ Analysis own_analysis(KSP ksp) {
   return analysis;
 }
 
+// Whether the PC is of a type of this program: it needs the matrix of an operator.
+bool is_own(KSP ksp) { return analysis_of(ksp) != nullptr; }
+
+// For all of `b` at once, where a KSP is nothing but a PC of this program: others return false.
+bool solve_together(KSP ksp, std::span<const Vec> b, std::span<const Vec> x, bool transposed) {
+  PetscBool alone = PETSC_FALSE;
+  check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(ksp), KSPPREONLY, &alone));
+  auto* const apply = own_function<ApplyToColumns>(ksp, kApplyToColumns);
+  if (alone == PETSC_FALSE || apply == nullptr) return false;
+  check(apply(preconditioner_of(ksp), b, x, transposed));
+  check(KSPViewFromOptions(ksp, nullptr, "-ksp_view"));  // as KSPSolve does
+  return true;
+}
+
 }  // namespace
 
 std::string implied_pc_type(const std::string& prefix) {
@@ -304,24 +309,6 @@ KspHandle linear_solver(Mat matrix, const std::string& prefix, PCType pc_type) {
   check(KSPSetFromOptions(ksp));
   return ksp;
 }
-
-namespace {
-
-// Whether the PC is of a type of this program: it needs the matrix of an operator.
-bool is_own(KSP ksp) { return analysis_of(ksp) != nullptr; }
-
-// For all of `b` at once, where a KSP is nothing but a PC of this program: others return false.
-bool solve_together(KSP ksp, std::span<const Vec> b, std::span<const Vec> x, bool transposed) {
-  PetscBool alone = PETSC_FALSE;
-  check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(ksp), KSPPREONLY, &alone));
-  auto* const apply = own_function<ApplyToColumns>(ksp, kApplyToColumns);
-  if (alone == PETSC_FALSE || apply == nullptr) return false;
-  check(apply(preconditioner_of(ksp), b, x, transposed));
-  check(KSPViewFromOptions(ksp, nullptr, "-ksp_view"));  // as KSPSolve does
-  return true;
-}
-
-}  // namespace
 
 void require_factored(KSP ksp, const std::string& prefix) {
   const PCFailedReason reason = failure_of(ksp);
@@ -375,15 +362,9 @@ Factorization::Factorization(Mat matrix, const std::string& prefix, SolverStatis
   ++(kComplex ? statistics_.factorizations_complex : statistics_.factorizations_real);
 }
 
-void Factorization::solve_once(Vec b, Vec x) {
+void Factorization::solve_once(Vec b, Vec x, bool transposed) {
   const PhaseTimer timer("solve", statistics_.solve_seconds);
-  apply(b, x, false);
-  ++statistics_.solves;
-}
-
-void Factorization::solve_transposed_once(Vec b, Vec x) {
-  const PhaseTimer timer("solve", statistics_.solve_seconds);
-  apply(b, x, true);
+  apply(b, x, transposed);
   ++statistics_.solves;
 }
 

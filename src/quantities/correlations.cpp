@@ -1,13 +1,8 @@
 #include "stickslip/quantities/correlations.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include "stickslip/case/spectrum_rows.hpp"
-#include "stickslip/linalg/petsc.hpp"
-#include "stickslip/linalg/vectors.hpp"
-#include "stickslip/quantities/engines/propagator.hpp"
-#include "stickslip/quantities/plan.hpp"
 
 namespace stickslip::quantities {
 namespace {
@@ -28,6 +23,24 @@ std::vector<Uncertain> curve(const std::string& name, const model::Process& proc
   return time_curve(pencil, {b, c, weight}, nature, {{0, unit}}, time, time_scales(process),
                     tolerance.value, tolerance.recipe(name))
       .value[0];
+}
+
+void find_autocorrelation(Computation& computation) {
+  const auto& time = computation.question().time;
+  const auto values = autocorrelation(computation.systems, computation.distribution(), time,
+                                      computation.tolerance());
+  append_array(array(cases::kAutocovariance, time), values, computation.results());
+}
+
+void find_expectations(Computation& computation) {
+  const auto& question = computation.question();
+  for (const auto& f : question.observables) {
+    const auto found = expectation(computation.systems, computation.distribution(), f,
+                                   question.start, question.time, computation.tolerance());
+    auto& results = computation.results();
+    append_array(array(blank(cases::kExpectationOf, f), question.time), found.value, results);
+    results.push_back(scalar(blank(cases::kStationaryOf, f), found.stationary, found.unseen));
+  }
 }
 
 }  // namespace
@@ -100,28 +113,6 @@ Expectation expectation(generator::Systems& systems, const StationaryDistributio
   for (auto& value : result.value) value.error += unseen;
   return result;
 }
-
-namespace {
-
-void find_autocorrelation(Computation& computation) {
-  const auto& time = computation.question().time;
-  const auto values = autocorrelation(computation.systems, computation.distribution(), time,
-                                      computation.tolerance());
-  append_array(array(cases::kAutocovariance, time), values, computation.results());
-}
-
-void find_expectations(Computation& computation) {
-  const auto& question = computation.question();
-  for (const auto& f : question.observables) {
-    const auto found = expectation(computation.systems, computation.distribution(), f,
-                                   question.start, question.time, computation.tolerance());
-    auto& results = computation.results();
-    append_array(array(blank(cases::kExpectationOf, f), question.time), found.value, results);
-    results.push_back(scalar(blank(cases::kStationaryOf, f), found.stationary, found.unseen));
-  }
-}
-
-}  // namespace
 
 void autocorrelation_tasks(Planner& planner) {
   planner.need_distribution();

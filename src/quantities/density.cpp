@@ -19,6 +19,53 @@ using generator::Branch;
 using generator::State;
 using generator::StateKind;
 
+// Calls visit(branch, state, probability) for the local sliding states; what is symmetry-reduced
+// stands for two places, each with half of the mass.
+template <class Visit>
+void for_each_place(const StationaryDistribution& distribution, Visit visit) {
+  const double total = distribution.excursion().mean_excursion();
+  const linalg::ReadView local(distribution.occupation());
+  PetscInt at = 0;
+  distribution.states().for_each_local([&](const State& state) {
+    const double probability = PetscRealPart(local[at++]) / total;
+    if (!distribution.states().symmetry_reduced()) return visit(state.branch, state, probability);
+    visit(Branch::positive, state, probability / 2);
+    visit(Branch::negative, state, probability / 2);
+  });
+}
+
+std::vector<double> atoms(const StationaryDistribution& distribution) {
+  const auto& process = distribution.process();
+  const int n = -process.noise.lowest();
+  const int lowest = process.lowest_static(), highest = process.highest_static();
+  const auto& stick = distribution.excursion().stick_time;
+  const double total = distribution.excursion().mean_excursion();
+  std::vector<double> atom(static_cast<std::size_t>(process.noise.count()), 0.0);
+  for (int i = lowest; i <= highest; ++i) {
+    atom[n + i] = stick[i - lowest] / total;
+    if (distribution.states().symmetry_reduced()) {
+      atom[n + i] = (stick[i - lowest] + stick[highest - i]) / (2 * total);
+    }
+  }
+  return atom;
+}
+
+// What belongs to v > 0, beside its mirror image.
+std::vector<double> on_both_signs(std::span<const double> upper, double factor) {
+  std::vector<double> all;
+  std::transform(upper.rbegin(), upper.rend(), std::back_inserter(all),
+                 [factor](double value) { return factor * value; });
+  all.insert(all.end(), upper.begin(), upper.end());
+  return all;
+}
+
+double least_value(MPI_Comm comm, const PhaseField& field) {
+  double least = 0;
+  for (double value : field.local_rows()) least = std::min(least, value);
+  MPI_Allreduce(MPI_IN_PLACE, &least, 1, MPI_DOUBLE, MPI_MIN, comm);
+  return least;
+}
+
 }  // namespace
 
 PhaseField::PhaseField(const generator::Discretisation& discretisation,
@@ -118,57 +165,6 @@ std::vector<double> PhaseField::local_rows() const {
   });
   return rows;
 }
-
-namespace {
-
-// Calls visit(branch, state, probability) for the local sliding states; what is symmetry-reduced
-// stands for two places, each with half of the mass.
-template <class Visit>
-void for_each_place(const StationaryDistribution& distribution, Visit visit) {
-  const double total = distribution.excursion().mean_excursion();
-  const linalg::ReadView local(distribution.occupation());
-  PetscInt at = 0;
-  distribution.states().for_each_local([&](const State& state) {
-    const double probability = PetscRealPart(local[at++]) / total;
-    if (!distribution.states().symmetry_reduced()) return visit(state.branch, state, probability);
-    visit(Branch::positive, state, probability / 2);
-    visit(Branch::negative, state, probability / 2);
-  });
-}
-
-std::vector<double> atoms(const StationaryDistribution& distribution) {
-  const auto& process = distribution.process();
-  const int n = -process.noise.lowest();
-  const int lowest = process.lowest_static(), highest = process.highest_static();
-  const auto& stick = distribution.excursion().stick_time;
-  const double total = distribution.excursion().mean_excursion();
-  std::vector<double> atom(static_cast<std::size_t>(process.noise.count()), 0.0);
-  for (int i = lowest; i <= highest; ++i) {
-    atom[n + i] = stick[i - lowest] / total;
-    if (distribution.states().symmetry_reduced()) {
-      atom[n + i] = (stick[i - lowest] + stick[highest - i]) / (2 * total);
-    }
-  }
-  return atom;
-}
-
-// What belongs to v > 0, beside its mirror image.
-std::vector<double> on_both_signs(std::span<const double> upper, double factor) {
-  std::vector<double> all;
-  std::transform(upper.rbegin(), upper.rend(), std::back_inserter(all),
-                 [factor](double value) { return factor * value; });
-  all.insert(all.end(), upper.begin(), upper.end());
-  return all;
-}
-
-double least_value(MPI_Comm comm, const PhaseField& field) {
-  double least = 0;
-  for (double value : field.local_rows()) least = std::min(least, value);
-  MPI_Allreduce(MPI_IN_PLACE, &least, 1, MPI_DOUBLE, MPI_MIN, comm);
-  return least;
-}
-
-}  // namespace
 
 DensityField density_field(const StationaryDistribution& distribution) {
   const auto& [process, noise, velocities] = distribution.discretisation();

@@ -5,15 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
-#include <memory>
 #include <utility>
 
 #include "engines/displacement_model.hpp"
 #include "stickslip/case/displacement_rows.hpp"
-#include "stickslip/linalg/petsc.hpp"
-#include "stickslip/linalg/vectors.hpp"
-#include "stickslip/quantities/engines/propagator.hpp"
-#include "stickslip/quantities/plan.hpp"
 
 namespace stickslip::quantities {
 namespace {
@@ -152,6 +147,25 @@ void add_drift(const generator::Discretisation& discretisation, const Excursion&
   }
 }
 
+void find_transform(Computation& computation) {
+  const auto& question = computation.question();
+  const auto wavenumbers = question.values(cases::kWavenumber.option);
+  const bool even = model::mirrors_itself(computation.process(), question.start);
+  for (double t : question.time) {
+    Result cosine = array_at(cases::kDisplacementCosine, t, wavenumbers),
+           sine = array_at(cases::kDisplacementSine, t, wavenumbers);
+    DisplacementModel model(computation.systems, computation.distribution(), question.start, t,
+                            computation.tolerance().value);
+    for (double k : wavenumbers) {
+      DisplacementModel::Transform found{1, 0};
+      if (t != 0 && k != 0) found = model.at(k);
+      append_value(cosine, {found.value.real(), found.error});
+      append_value(sine, even ? Uncertain{} : Uncertain{found.value.imag(), found.error});
+    }
+    for (auto* result : {&cosine, &sine}) computation.results().push_back(std::move(*result));
+  }
+}
+
 }  // namespace
 
 Displacement displacement(generator::Systems& systems, const StationaryDistribution& distribution,
@@ -226,29 +240,6 @@ void displacement_tasks(Planner& planner) {
   };
   planner.add_adaptive("displacement", stationary ? 6 : 12, stationary ? 36 : 200, find);
 }
-
-namespace {
-
-void find_transform(Computation& computation) {
-  const auto& question = computation.question();
-  const auto wavenumbers = question.values(cases::kWavenumber.option);
-  const bool even = model::mirrors_itself(computation.process(), question.start);
-  for (double t : question.time) {
-    Result cosine = array_at(cases::kDisplacementCosine, t, wavenumbers),
-           sine = array_at(cases::kDisplacementSine, t, wavenumbers);
-    DisplacementModel model(computation.systems, computation.distribution(), question.start, t,
-                            computation.tolerance().value);
-    for (double k : wavenumbers) {
-      DisplacementModel::Transform found{1, 0};
-      if (t != 0 && k != 0) found = model.at(k);
-      append_value(cosine, {found.value.real(), found.error});
-      append_value(sine, even ? Uncertain{} : Uncertain{found.value.imag(), found.error});
-    }
-    for (auto* result : {&cosine, &sine}) computation.results().push_back(std::move(*result));
-  }
-}
-
-}  // namespace
 
 void displacement_transform_tasks(Planner& planner) {
   planner.need_distribution();

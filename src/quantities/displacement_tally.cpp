@@ -42,6 +42,37 @@ struct TransformWave {
   double weight, cosine, sine;
 };
 
+struct Within {
+  double weight, within;
+};
+
+// With symmetry x is as likely as -x, and |x| is below the quantile of |2 p - 1| with that
+// probability.
+Estimate mirrored(const PathBins& sizes, double p) {
+  if (p == 0.5) return {};
+  const auto [value, low, high] = sizes.quantile(std::abs(2 * p - 1));
+  return p > 0.5 ? Estimate{value, low, high} : Estimate{-value, -high, -low};
+}
+
+void quantiles_tally(Tally& tally, bool even) {
+  const auto probabilities = tally.question().values(cases::kProbability.option);
+  if (probabilities.empty()) return;
+  const auto bins = tally.bins_along(tally.question().start, !even,
+                                     [even](double x) { return even ? std::abs(x) : x; });
+  tally.report([=](const Tally& t) -> Estimates {
+    Estimates found;
+    for (std::size_t at = 0; at < bins.size(); ++at) {
+      found.push_back(array(cases::kDisplacementQuantile, probabilities, [&](std::size_t n) {
+        const double p = probabilities[n];
+        return even ? mirrored(*bins[at], p) : bins[at]->quantile(p);
+      }));
+      found.back().key =
+          cases::kDisplacementQuantile.key_of(fmt::format("{}", t.question().time[at]));
+    }
+    return found;
+  });
+}
+
 }  // namespace
 
 void displacement_transform_tally(Tally& tally) {
@@ -78,41 +109,6 @@ void displacement_transform_tally(Tally& tally) {
     return found;
   });
 }
-
-namespace {
-
-struct Within {
-  double weight, within;
-};
-
-// With symmetry x is as likely as -x, and |x| is below the quantile of |2 p - 1| with that
-// probability.
-Estimate mirrored(const PathBins& sizes, double p) {
-  if (p == 0.5) return {};
-  const auto [value, low, high] = sizes.quantile(std::abs(2 * p - 1));
-  return p > 0.5 ? Estimate{value, low, high} : Estimate{-value, -high, -low};
-}
-
-void quantiles_tally(Tally& tally, bool even) {
-  const auto probabilities = tally.question().values(cases::kProbability.option);
-  if (probabilities.empty()) return;
-  const auto bins = tally.bins_along(tally.question().start, !even,
-                                     [even](double x) { return even ? std::abs(x) : x; });
-  tally.report([=](const Tally& t) -> Estimates {
-    Estimates found;
-    for (std::size_t at = 0; at < bins.size(); ++at) {
-      found.push_back(array(cases::kDisplacementQuantile, probabilities, [&](std::size_t n) {
-        const double p = probabilities[n];
-        return even ? mirrored(*bins[at], p) : bins[at]->quantile(p);
-      }));
-      found.back().key =
-          cases::kDisplacementQuantile.key_of(fmt::format("{}", t.question().time[at]));
-    }
-    return found;
-  });
-}
-
-}  // namespace
 
 // The share of paths that end below each distance, and in a cell about it, which ends at 0 so that
 // bodies that have not moved are in none.

@@ -3,15 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <numeric>
-#include <string>
 
 #include "stickslip/case/duration_rows.hpp"
 #include "stickslip/case/sticking_rows.hpp"
-#include "stickslip/generator/static_chain.hpp"
-#include "stickslip/linalg/petsc.hpp"
-#include "stickslip/quantities/plan.hpp"
 
 namespace stickslip::quantities {
 namespace {
@@ -19,6 +13,65 @@ namespace {
 using generator::StaticPhase;
 using generator::Symmetry;
 using linalg::check;
+
+void find_distributions_of_phases(Computation& computation) {
+  using namespace cases;
+  const auto& time = computation.question().time;
+  const auto& distribution = computation.distribution();
+  auto& results = computation.results();
+  const auto slide =
+      slide_distribution(computation.systems, distribution, time, computation.tolerance());
+  append_distribution(kDensitySlide, kCdfSlide, time, slide, results);
+  append_distribution(kDensityStick, kCdfStick, time,
+                      stick_distribution(computation.process(), distribution.entry(), time),
+                      results);
+  computation.report("slide_pairs", slide.pairs,
+                     "pairs of Krylov vectors in the reduced model of sliding durations");
+}
+
+void find_distribution_of_excursions(Computation& computation) {
+  using namespace cases;
+  const auto& time = computation.question().time;
+  const auto excursion = excursion_distribution(computation.systems, computation.distribution(),
+                                                time, computation.tolerance());
+  append_distribution(kDensityExcursion, kCdfExcursion, time, excursion, computation.results());
+  computation.report("excursion_pairs", excursion.pairs,
+                     "pairs of Krylov vectors in the reduced model of excursion durations");
+}
+
+void add_phases(Planner& planner) {
+  planner.need_distribution();
+  planner.resolve_times();
+  planner.add_adaptive("distributions of phases", 7, 80, find_distributions_of_phases);
+}
+
+// Those that are not there already.
+void find_duration_moments(Computation& computation) {
+  const auto& distribution = computation.distribution();
+  const auto entry = distribution.entry();
+  const auto moments = duration_moments(computation.systems, distribution, entry);
+  const auto& process = computation.process();
+  auto& results = computation.results();
+  const auto append = [&](const Row& row, Uncertain value) {
+    const bool there = std::any_of(results.begin(), results.end(),
+                                   [&](const Result& result) { return result.key == row.key; });
+    if (!there) results.push_back(scalar(row, value));
+  };
+  append(cases::kMeanSlide, moments.mean_slide);
+  append(cases::kMeanStick, moments.mean_stick);
+  append(cases::kMeanExcursion, moments.mean_excursion);
+  append(cases::kVarSlide, moments.var_slide);
+  append(cases::kVarStick, moments.var_stick);
+  append(cases::kVarExcursion, moments.var_excursion);
+  std::vector<double> value, error;
+  for (const auto& p : entry) {
+    value.push_back(p.value);
+    error.push_back(p.error);
+  }
+  append(cases::kFSlide0, {slide_density_at_zero(process, distribution.starts()), 0});
+  append(cases::kFStick0,
+         {stick_density_at_zero(process, value), stick_density_at_zero(process, error)});
+}
 
 }  // namespace
 
@@ -135,41 +188,6 @@ void append_distribution(const Row& density_row, const Row& distribution_row,
   append_array(array(distribution_row, abscissa), durations.distribution, results);
 }
 
-namespace {
-
-void find_distributions_of_phases(Computation& computation) {
-  using namespace cases;
-  const auto& time = computation.question().time;
-  const auto& distribution = computation.distribution();
-  auto& results = computation.results();
-  const auto slide =
-      slide_distribution(computation.systems, distribution, time, computation.tolerance());
-  append_distribution(kDensitySlide, kCdfSlide, time, slide, results);
-  append_distribution(kDensityStick, kCdfStick, time,
-                      stick_distribution(computation.process(), distribution.entry(), time),
-                      results);
-  computation.report("slide_pairs", slide.pairs,
-                     "pairs of Krylov vectors in the reduced model of sliding durations");
-}
-
-void find_distribution_of_excursions(Computation& computation) {
-  using namespace cases;
-  const auto& time = computation.question().time;
-  const auto excursion = excursion_distribution(computation.systems, computation.distribution(),
-                                                time, computation.tolerance());
-  append_distribution(kDensityExcursion, kCdfExcursion, time, excursion, computation.results());
-  computation.report("excursion_pairs", excursion.pairs,
-                     "pairs of Krylov vectors in the reduced model of excursion durations");
-}
-
-void add_phases(Planner& planner) {
-  planner.need_distribution();
-  planner.resolve_times();
-  planner.add_adaptive("distributions of phases", 7, 80, find_distributions_of_phases);
-}
-
-}  // namespace
-
 void duration_density_tasks(Planner& planner) {
   add_phases(planner);
   planner.add_adaptive("distribution of excursions", 7, 80, find_distribution_of_excursions);
@@ -178,38 +196,6 @@ void duration_density_tasks(Planner& planner) {
 void phase_durations_tasks(Planner& planner) {
   if (!planner.question().wants(cases::Quantity::duration_density)) add_phases(planner);
 }
-
-namespace {
-
-// Those that are not there already.
-void find_duration_moments(Computation& computation) {
-  const auto& distribution = computation.distribution();
-  const auto entry = distribution.entry();
-  const auto moments = duration_moments(computation.systems, distribution, entry);
-  const auto& process = computation.process();
-  auto& results = computation.results();
-  const auto append = [&](const Row& row, Uncertain value) {
-    const bool there = std::any_of(results.begin(), results.end(),
-                                   [&](const Result& result) { return result.key == row.key; });
-    if (!there) results.push_back(scalar(row, value));
-  };
-  append(cases::kMeanSlide, moments.mean_slide);
-  append(cases::kMeanStick, moments.mean_stick);
-  append(cases::kMeanExcursion, moments.mean_excursion);
-  append(cases::kVarSlide, moments.var_slide);
-  append(cases::kVarStick, moments.var_stick);
-  append(cases::kVarExcursion, moments.var_excursion);
-  std::vector<double> value, error;
-  for (const auto& p : entry) {
-    value.push_back(p.value);
-    error.push_back(p.error);
-  }
-  append(cases::kFSlide0, {slide_density_at_zero(process, distribution.starts()), 0});
-  append(cases::kFStick0,
-         {stick_density_at_zero(process, value), stick_density_at_zero(process, error)});
-}
-
-}  // namespace
 
 Uncertain stick_transform(const model::Process& process, double lambda,
                           const std::vector<Uncertain>& entry) {

@@ -13,6 +13,9 @@ void follow_phases(Tally& tally) {
   tally.distribution(cases::kDensityStick, cases::kCdfStick, time, &Excursion::stick);
 }
 
+double of_slide(const Excursion& e, double lambda) { return std::exp(-lambda * e.slide); }
+double of_stick(const Excursion& e, double lambda) { return std::exp(-lambda * e.stick); }
+
 }  // namespace
 
 void duration_density_tally(Tally& tally) {
@@ -24,13 +27,6 @@ void duration_density_tally(Tally& tally) {
 void phase_durations_tally(Tally& tally) {
   if (!tally.question().wants(cases::Quantity::duration_density)) follow_phases(tally);
 }
-
-namespace {
-
-double of_slide(const Excursion& e, double lambda) { return std::exp(-lambda * e.slide); }
-double of_stick(const Excursion& e, double lambda) { return std::exp(-lambda * e.stick); }
-
-}  // namespace
 
 void laplace_tally(Tally& tally) {
   struct Durations {

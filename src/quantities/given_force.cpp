@@ -7,7 +7,6 @@
 #include <limits>
 #include <numeric>
 
-#include "stickslip/base/text.hpp"
 #include "stickslip/case/force_rows.hpp"
 #include "stickslip/simulation/response.hpp"
 

@@ -110,7 +110,7 @@ class Powers {
       next.left = std::move(factors.solve_transposed(vectors_.left).x);
     } else {
       factors.solve_once(vectors_.right, next.right);
-      factors.solve_transposed_once(vectors_.left, next.left);
+      factors.solve_once(vectors_.left, next.left, true);
     }
     leave_unreached_out(next.right);
     leave_unreached_out(next.left);

@@ -12,13 +12,6 @@
 #include <utility>
 
 #include "stickslip/case/passage_rows.hpp"
-#include "stickslip/linalg/dense.hpp"
-#include "stickslip/linalg/petsc.hpp"
-#include "stickslip/linalg/vectors.hpp"
-#include "stickslip/model/process.hpp"
-#include "stickslip/quantities/engines/excursions.hpp"
-#include "stickslip/quantities/engines/propagator.hpp"
-#include "stickslip/quantities/plan.hpp"
 #include "stickslip/simulation/flow.hpp"
 
 namespace stickslip::quantities {
@@ -237,6 +230,30 @@ double spread(const StartingPoint& start, Vec m, const ByLevel& at_rest, double 
   return sum;
 }
 
+// The systems of a passage of `speed` as asked for: with symmetry |V| has that of one branch;
+// passages of V itself need both.
+generator::SystemKey passage_system(const Planner& planner, double speed) {
+  auto key = planner.system();
+  key.speed_limit = speed;
+  key.passage = planner.question().passage;
+  if (key.passage != model::Passage::both) key.symmetry = generator::Symmetry::none;
+  return key;
+}
+
+// From how many levels excursions start in these.
+int starts_in(const Planner& planner, const generator::SystemKey& key) {
+  if (key.symmetry != generator::Symmetry::none) return planner.starts();
+  return static_cast<int>(planner.given().scene.meant().starts().size());
+}
+
+// One about that passage, still without uses: a stationary start takes a factorisation of its own.
+Task passage_task(const Planner& planner, const char* name, const generator::SystemKey& key) {
+  Task task{fmt::format("{} to w = {:g}", name, key.speed_limit)};
+  task.adaptive = planner.question().start.kind == model::Start::Kind::stationary;
+  if (task.adaptive) task.usual_factorizations = 1, task.usual_solves = planner.starts();
+  return task;
+}
+
 }  // namespace
 
 PassageTime passage_time(generator::Systems& systems, const generator::SystemKey& key,
@@ -272,34 +289,6 @@ PassageTime passage_time(generator::Systems& systems, const generator::SystemKey
   return {changed_from(roughly.integral(one, sticking.each(1)).overall, time.overall),
           changed_from(variance(roughly, m.correction), variance(until, m.x))};
 }
-
-namespace {
-
-// The systems of a passage of `speed` as asked for: with symmetry |V| has that of one branch;
-// passages of V itself need both.
-generator::SystemKey passage_system(const Planner& planner, double speed) {
-  auto key = planner.system();
-  key.speed_limit = speed;
-  key.passage = planner.question().passage;
-  if (key.passage != model::Passage::both) key.symmetry = generator::Symmetry::none;
-  return key;
-}
-
-// From how many levels excursions start in these.
-int starts_in(const Planner& planner, const generator::SystemKey& key) {
-  if (key.symmetry != generator::Symmetry::none) return planner.starts();
-  return static_cast<int>(planner.given().scene.meant().starts().size());
-}
-
-// One about that passage, still without uses: a stationary start takes a factorisation of its own.
-Task passage_task(const Planner& planner, const char* name, const generator::SystemKey& key) {
-  Task task{fmt::format("{} to w = {:g}", name, key.speed_limit)};
-  task.adaptive = planner.question().start.kind == model::Start::Kind::stationary;
-  if (task.adaptive) task.usual_factorizations = 1, task.usual_solves = planner.starts();
-  return task;
-}
-
-}  // namespace
 
 void first_passage_tasks(Planner& planner) {
   planner.resolve_speeds();
@@ -411,6 +400,14 @@ class Curves {
   int pairs_ = 0;
 };
 
+Result of_speed(const Row& row, const std::vector<double>& abscissa, double speed,
+                const std::vector<Uncertain>& values) {
+  Result result = array_at(row, speed, abscissa);
+  for (const Uncertain& value : values) append_value(result, value);
+  name_too_rare(result);
+  return result;
+}
+
 }  // namespace
 
 std::vector<Uncertain> passage_transform(generator::Systems& systems, generator::SystemKey key,
@@ -492,18 +489,6 @@ DurationDistribution passage_distribution(generator::Systems& systems,
   }
   return found;
 }
-
-namespace {
-
-Result of_speed(const Row& row, const std::vector<double>& abscissa, double speed,
-                const std::vector<Uncertain>& values) {
-  Result result = array_at(row, speed, abscissa);
-  for (const Uncertain& value : values) append_value(result, value);
-  name_too_rare(result);
-  return result;
-}
-
-}  // namespace
 
 void passage_transform_tasks(Planner& planner) {
   const auto& question = planner.question();

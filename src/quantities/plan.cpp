@@ -18,6 +18,20 @@ namespace {
 
 using cases::Quantity;
 
+// What the results of a row are called: one for each observable, time or speed.
+std::vector<std::string> keys_of(const Row& row, const cases::Question& question) {
+  if (!row.is_pattern()) return {std::string(row.key)};
+  std::vector<std::string> keys;
+  const bool of_time = row.key.ends_with("(t)"), of_speed = row.key.ends_with("(w)");
+  for (double value : of_time ? question.time : question.velocity) {
+    if (of_time || of_speed) keys.push_back(row.key_of(fmt::format("{}", value)));
+  }
+  for (const auto& f : question.observables) {
+    if (!of_time && !of_speed) keys.push_back(row.key_of(f.name));
+  }
+  return keys;
+}
+
 }  // namespace
 
 std::string reason_to_go_on(MPI_Comm comm) {
@@ -37,24 +51,6 @@ void attempt(const Problem& problem, Evaluation& evaluation, cases::Quantity qua
     evaluation.failed[quantity] = reason_to_go_on(problem.comm);
   }
 }
-
-namespace {
-
-// What the results of a row are called: one for each observable, time or speed.
-std::vector<std::string> keys_of(const Row& row, const cases::Question& question) {
-  if (!row.is_pattern()) return {std::string(row.key)};
-  std::vector<std::string> keys;
-  const bool of_time = row.key.ends_with("(t)"), of_speed = row.key.ends_with("(w)");
-  for (double value : of_time ? question.time : question.velocity) {
-    if (of_time || of_speed) keys.push_back(row.key_of(fmt::format("{}", value)));
-  }
-  for (const auto& f : question.observables) {
-    if (!of_time && !of_speed) keys.push_back(row.key_of(f.name));
-  }
-  return keys;
-}
-
-}  // namespace
 
 Results without_values(const cases::Case& given, cases::Quantity quantity,
                        const std::string& reason) {

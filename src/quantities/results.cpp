@@ -2,12 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
-#include <utility>
-
-#include "stickslip/base/text.hpp"
-
 namespace stickslip::quantities {
 
 namespace {

@@ -8,14 +8,7 @@
 
 #include "stickslip/case/sensitivity_rows.hpp"
 #include "stickslip/case/sticking_rows.hpp"
-#include "stickslip/generator/static_chain.hpp"
-#include "stickslip/linalg/petsc.hpp"
-#include "stickslip/linalg/vectors.hpp"
 #include "stickslip/model/effect.hpp"
-#include "stickslip/model/noise_chain.hpp"
-#include "stickslip/model/observable.hpp"
-#include "stickslip/quantities/engines/excursions.hpp"
-#include "stickslip/quantities/plan.hpp"
 
 namespace stickslip::quantities {
 namespace {
@@ -81,25 +74,155 @@ ByTau static_phase_by_tau(const model::Process& process, const std::vector<doubl
 /// The derivatives by all parameters.
 class Sensitivity {
  public:
-  /// Solves for the durations.
+  // Solves for the durations.
   Sensitivity(generator::Systems& systems, const StationaryDistribution& distribution,
-              const std::vector<model::Derivative>& parameters);
+              const std::vector<model::Derivative>& parameters)
+      : system_(systems.at(0, generator::symmetry_of(systems.process()))),
+        distribution_(distribution),
+        parameters_(parameters) {
+    const auto chain = generator::StaticChain::of(systems.process());
+    for (int start : distribution.starts().levels) exits_.push_back(chain.exit_transform_to(start));
+    const Symmetry symmetry = generator::symmetry_of(systems.process());
+    for (const auto& theta : parameters_) {
+      changes_.push_back(generator::assemble(systems.comm(), systems.discretisation(), {}, symmetry,
+                                             generator::StaticPhase::killing, systems.statistics(),
+                                             theta));
+    }
+    slide_ = sliding_mean([](double, double, double) { return 1.0; });
+    stick_ = sticking_mean();
+  }
 
-  void append_sticking(Results& results) const;
-  void append_moments(Results& results) const;
+  void append_sticking(Results& results) const {
+    const auto& excursion = distribution_.excursion();
+    const double slide = excursion.mean_slide(), stick = excursion.mean_stick();
+    const double total = excursion.mean_excursion();
+    Gradient sticking, sliding, whole;
+    for (std::size_t n = 0; n < parameters_.size(); ++n) {
+      const Uncertain up = (slide / total) * stick_[n], down = (stick / total) * slide_[n];
+      sticking.push_back((1 / total) * (up - down));
+      sliding.push_back((1 / total) * (down - up));
+      whole.push_back(slide_[n] + stick_[n]);
+    }
+    append(cases::kPStick, sticking, results);
+    append(cases::kPSlide, sliding, results);
+    append(cases::kMeanStick, stick_, results);
+    append(cases::kMeanSlide, slide_, results);
+    append(cases::kMeanExcursion, whole, results);
+  }
+
+  void append_moments(Results& results) const {
+    const auto mean = [this](const KolmogorovOperator::Observable& f) {
+      return linalg::dot(distribution_.occupation(), system_.a().values(f));
+    };
+    const auto add = [&](const Row& row, const KolmogorovOperator::Observable& f) {
+      append(row, ratio(mean(f), sliding_mean(f)), results);
+    };
+    add(cases::kEV2, [](double, double, double v) { return v * v; });
+    add(cases::kEAbsV, [](double, double, double v) { return std::abs(v); });
+    add(cases::kEXV, [](double x, double, double v) { return x * v; });
+    if (distribution_.process().drifts()) {
+      add(cases::kEV, [](double, double, double v) { return v; });
+    }
+  }
 
  private:
-  /// Of one mean, by parameter.
-  using Gradient = std::vector<Uncertain>;
+  using Gradient = std::vector<Uncertain>;  // of one mean, by parameter
 
-  [[nodiscard]] Gradient sliding_mean(const generator::KolmogorovOperator::Observable& f) const;
-  [[nodiscard]] Gradient sticking_mean() const;
-  [[nodiscard]] std::vector<double> worth_of_starts(const linalg::Solution& h) const;
+  [[nodiscard]] Gradient sliding_mean(const KolmogorovOperator::Observable& f) const {
+    const std::vector<double> none(exits_[0].size(), 0.0);
+    return through(system_.factors().solve(system_.a().values(f)), none);
+  }
+
+  [[nodiscard]] Gradient sticking_mean() const {
+    const auto& process = distribution_.process();
+    const auto& stick_time = distribution_.excursion().stick_time;
+    const auto chain = generator::StaticChain::of(process);
+    const auto mean = chain.integral(std::vector<double>(stick_time.size(), 1.0));
+    // On a single static level all sticking phases have one distribution, whatever the sliding
+    // phases.
+    Gradient gradient(parameters_.size());
+    if (mean.size() > 1) {
+      gradient = through(
+          system_.factors().solve(system_.a().from_static({mean.begin(), mean.end()})), mean);
+    }
+    for (std::size_t n = 0; n < parameters_.size(); ++n) {
+      if (!parameters_[n].is_of_jumps()) continue;
+      const double by_tau = static_phase_by_tau(process, stick_time).sticking;
+      const double uncorrected =
+          static_phase_by_tau(process, distribution_.uncorrected().stick_time).sticking;
+      gradient[n] = gradient[n] + Uncertain{by_tau, std::abs(uncorrected - by_tau)};
+    }
+    return gradient;
+  }
+
+  // What the level from which the next excursion starts adds, by start, of a mean h.
+  std::vector<double> worth_of_starts(const linalg::Solution& h) const {
+    const auto& starts = distribution_.starts();
+    const std::size_t count = starts.size();
+    std::vector<Uncertain> means;
+    std::vector<std::vector<Uncertain>> next(count);
+    for (std::size_t t = 0; t < count; ++t) {
+      means.push_back({linalg::dot(system_.a().trace_at_start(starts.levels[t]), h.x), 0});
+      for (std::size_t u = 0; u < count; ++u) next[t].push_back({starts.next[t * count + u], 0});
+    }
+    const std::vector<Uncertain> ones(count, {1, 0});
+    std::vector<double> worth;
+    for (const auto& z : DiscountedStarts(0, ones, next).apart(means)) worth.push_back(z.value);
+    return worth;
+  }
+
   // nu dL (h, s) by parameter, and what the starts change.
-  [[nodiscard]] Gradient through(linalg::Solution h, const std::vector<double>& s) const;
-  // value and mean of an integral over an excursion: the derivative of its ratio to mean_excursion.
-  [[nodiscard]] Gradient ratio(double mean, const Gradient& of_mean) const;
-  void append(const Row& row, const Gradient& gradient, Results& results) const;
+  [[nodiscard]] Gradient through(linalg::Solution h, const std::vector<double>& s) const {
+    std::vector<PetscScalar> values(s.begin(), s.end());
+    double upper_side = 0;
+    if (exits_.size() > 1) {
+      const auto worth = worth_of_starts(h);
+      upper_side = worth.back() - worth.front();
+      std::vector<PetscScalar> next(s.size(), 0.0);
+      for (std::size_t t = 0; t < worth.size(); ++t) {
+        for (std::size_t n = 0; n < next.size(); ++n) next[n] += worth[t] * exits_[t][n];
+      }
+      const auto more = system_.factors().solve(system_.a().from_static(next));
+      linalg::check(VecAXPY(h.x, 1, more.x));
+      linalg::check(VecAXPY(h.correction, 1, more.correction));
+      for (std::size_t n = 0; n < next.size(); ++n) values[n] += next[n];
+    }
+    Gradient gradient;
+    for (std::size_t n = 0; n < changes_.size(); ++n) {
+      const auto& change = changes_[n];
+      linalg::VecHandle image = change.zeros();
+      const auto flux = [&](Vec function) {
+        linalg::check(MatMult(change.matrix(), function, image));
+        return -linalg::dot(distribution_.occupation(), image);
+      };
+      const double moved = linalg::dot(distribution_.occupation(), change.from_static(values));
+      const double chain =
+          !parameters_[n].is_of_jumps()
+              ? 0
+              : upper_side * static_phase_by_tau(distribution_.process(),
+                                                 distribution_.excursion().stick_time)
+                                 .upwards;
+      gradient.push_back({flux(h.x) + moved + chain, std::abs(flux(h.correction))});
+    }
+    return gradient;
+  }
+
+  // value and mean of an integral over an excursion: the derivative of its ratio to
+  // mean_excursion.
+  [[nodiscard]] Gradient ratio(double mean, const Gradient& of_mean) const {
+    const double total = distribution_.excursion().mean_excursion();
+    Gradient gradient;
+    for (std::size_t n = 0; n < of_mean.size(); ++n) {
+      gradient.push_back((1 / total) * (of_mean[n] - (mean / total) * (slide_[n] + stick_[n])));
+    }
+    return gradient;
+  }
+
+  void append(const Row& row, const Gradient& gradient, Results& results) const {
+    for (std::size_t n = 0; n < parameters_.size(); ++n) {
+      results.push_back(derivative(row, parameters_[n].option, gradient[n]));
+    }
+  }
 
   generator::System& system_;
   const StationaryDistribution& distribution_;
@@ -109,146 +232,19 @@ class Sensitivity {
   Gradient slide_, stick_;
 };
 
-Sensitivity::Sensitivity(generator::Systems& systems, const StationaryDistribution& distribution,
-                         const std::vector<model::Derivative>& parameters)
-    : system_(systems.at(0, generator::symmetry_of(systems.process()))),
-      distribution_(distribution),
-      parameters_(parameters) {
-  const auto chain = generator::StaticChain::of(systems.process());
-  for (int start : distribution.starts().levels) exits_.push_back(chain.exit_transform_to(start));
-  const Symmetry symmetry = generator::symmetry_of(systems.process());
-  for (const auto& theta : parameters_) {
-    changes_.push_back(generator::assemble(systems.comm(), systems.discretisation(), {}, symmetry,
-                                           generator::StaticPhase::killing, systems.statistics(),
-                                           theta));
-  }
-  slide_ = sliding_mean([](double, double, double) { return 1.0; });
-  stick_ = sticking_mean();
-}
-
-Sensitivity::Gradient Sensitivity::sliding_mean(const KolmogorovOperator::Observable& f) const {
-  const std::vector<double> none(exits_[0].size(), 0.0);
-  return through(system_.factors().solve(system_.a().values(f)), none);
-}
-
-Sensitivity::Gradient Sensitivity::sticking_mean() const {
-  const auto& process = distribution_.process();
-  const auto& stick_time = distribution_.excursion().stick_time;
-  const auto chain = generator::StaticChain::of(process);
-  const auto mean = chain.integral(std::vector<double>(stick_time.size(), 1.0));
-  // On a single static level all sticking phases have one distribution, whatever the sliding
-  // phases.
-  Gradient gradient(parameters_.size());
-  if (mean.size() > 1) {
-    gradient =
-        through(system_.factors().solve(system_.a().from_static({mean.begin(), mean.end()})), mean);
-  }
-  for (std::size_t n = 0; n < parameters_.size(); ++n) {
-    if (!parameters_[n].is_of_jumps()) continue;
-    const double by_tau = static_phase_by_tau(process, stick_time).sticking;
-    const double uncorrected =
-        static_phase_by_tau(process, distribution_.uncorrected().stick_time).sticking;
-    gradient[n] = gradient[n] + Uncertain{by_tau, std::abs(uncorrected - by_tau)};
-  }
-  return gradient;
-}
-
-// What the level from which the next excursion starts adds, by start, of a mean h.
-std::vector<double> Sensitivity::worth_of_starts(const linalg::Solution& h) const {
-  const auto& starts = distribution_.starts();
-  const std::size_t count = starts.size();
-  std::vector<Uncertain> means;
-  std::vector<std::vector<Uncertain>> next(count);
-  for (std::size_t t = 0; t < count; ++t) {
-    means.push_back({linalg::dot(system_.a().trace_at_start(starts.levels[t]), h.x), 0});
-    for (std::size_t u = 0; u < count; ++u) next[t].push_back({starts.next[t * count + u], 0});
-  }
-  const std::vector<Uncertain> ones(count, {1, 0});
-  std::vector<double> worth;
-  for (const auto& z : DiscountedStarts(0, ones, next).apart(means)) worth.push_back(z.value);
-  return worth;
-}
-
-Sensitivity::Gradient Sensitivity::through(linalg::Solution h, const std::vector<double>& s) const {
-  std::vector<PetscScalar> values(s.begin(), s.end());
-  double upper_side = 0;
-  if (exits_.size() > 1) {
-    const auto worth = worth_of_starts(h);
-    upper_side = worth.back() - worth.front();
-    std::vector<PetscScalar> next(s.size(), 0.0);
-    for (std::size_t t = 0; t < worth.size(); ++t) {
-      for (std::size_t n = 0; n < next.size(); ++n) next[n] += worth[t] * exits_[t][n];
+// The sizes |A/p| by which derivatives dA/dp without digits are judged.
+void set_scales(const model::Scene& scene, const std::vector<model::Derivative>& parameters,
+                Results& results) {
+  const auto given = effects::parameters_of(scene);
+  for (const auto& theta : parameters) {
+    const auto p = std::ranges::find(given, theta.option, &model::Parameters::value_type::first);
+    if (p == given.end()) continue;
+    const double size = std::abs(std::get<double>(p->second));
+    for (const Result& a : results) {
+      const auto of =
+          std::ranges::find(results, fmt::format("d{}_d{}", a.key, theta.option), &Result::key);
+      if (of != results.end() && size > 0) of->scale = std::abs(a.value[0]) / size;
     }
-    const auto more = system_.factors().solve(system_.a().from_static(next));
-    linalg::check(VecAXPY(h.x, 1, more.x));
-    linalg::check(VecAXPY(h.correction, 1, more.correction));
-    for (std::size_t n = 0; n < next.size(); ++n) values[n] += next[n];
-  }
-  Gradient gradient;
-  for (std::size_t n = 0; n < changes_.size(); ++n) {
-    const auto& change = changes_[n];
-    linalg::VecHandle image = change.zeros();
-    const auto flux = [&](Vec function) {
-      linalg::check(MatMult(change.matrix(), function, image));
-      return -linalg::dot(distribution_.occupation(), image);
-    };
-    const double moved = linalg::dot(distribution_.occupation(), change.from_static(values));
-    const double chain =
-        !parameters_[n].is_of_jumps()
-            ? 0
-            : upper_side *
-                  static_phase_by_tau(distribution_.process(), distribution_.excursion().stick_time)
-                      .upwards;
-    gradient.push_back({flux(h.x) + moved + chain, std::abs(flux(h.correction))});
-  }
-  return gradient;
-}
-
-Sensitivity::Gradient Sensitivity::ratio(double mean, const Gradient& of_mean) const {
-  const double total = distribution_.excursion().mean_excursion();
-  Gradient gradient;
-  for (std::size_t n = 0; n < of_mean.size(); ++n) {
-    gradient.push_back((1 / total) * (of_mean[n] - (mean / total) * (slide_[n] + stick_[n])));
-  }
-  return gradient;
-}
-
-void Sensitivity::append(const Row& row, const Gradient& gradient, Results& results) const {
-  for (std::size_t n = 0; n < parameters_.size(); ++n) {
-    results.push_back(derivative(row, parameters_[n].option, gradient[n]));
-  }
-}
-
-void Sensitivity::append_sticking(Results& results) const {
-  const auto& excursion = distribution_.excursion();
-  const double slide = excursion.mean_slide(), stick = excursion.mean_stick();
-  const double total = excursion.mean_excursion();
-  Gradient sticking, sliding, whole;
-  for (std::size_t n = 0; n < parameters_.size(); ++n) {
-    const Uncertain up = (slide / total) * stick_[n], down = (stick / total) * slide_[n];
-    sticking.push_back((1 / total) * (up - down));
-    sliding.push_back((1 / total) * (down - up));
-    whole.push_back(slide_[n] + stick_[n]);
-  }
-  append(cases::kPStick, sticking, results);
-  append(cases::kPSlide, sliding, results);
-  append(cases::kMeanStick, stick_, results);
-  append(cases::kMeanSlide, slide_, results);
-  append(cases::kMeanExcursion, whole, results);
-}
-
-void Sensitivity::append_moments(Results& results) const {
-  const auto mean = [this](const KolmogorovOperator::Observable& f) {
-    return linalg::dot(distribution_.occupation(), system_.a().values(f));
-  };
-  const auto add = [&](const Row& row, const KolmogorovOperator::Observable& f) {
-    append(row, ratio(mean(f), sliding_mean(f)), results);
-  };
-  add(cases::kEV2, [](double, double, double v) { return v * v; });
-  add(cases::kEAbsV, [](double, double, double v) { return std::abs(v); });
-  add(cases::kEXV, [](double x, double, double v) { return x * v; });
-  if (distribution_.process().drifts()) {
-    add(cases::kEV, [](double, double, double v) { return v; });
   }
 }
 
@@ -289,26 +285,6 @@ void append_noise_sensitivity(const model::Process& process, Results& results) {
   results.push_back(derivative(cases::kPWithin, "tau", {by_within, rounding * within_size}));
   results.push_back(derivative(cases::kEX2, "tau", {by_square, rounding * size}));
 }
-
-namespace {
-
-// The sizes |A/p| by which derivatives dA/dp without digits are judged.
-void set_scales(const model::Scene& scene, const std::vector<model::Derivative>& parameters,
-                Results& results) {
-  const auto given = effects::parameters_of(scene);
-  for (const auto& theta : parameters) {
-    const auto p = std::ranges::find(given, theta.option, &model::Parameters::value_type::first);
-    if (p == given.end()) continue;
-    const double size = std::abs(std::get<double>(p->second));
-    for (const Result& a : results) {
-      const auto of =
-          std::ranges::find(results, fmt::format("d{}_d{}", a.key, theta.option), &Result::key);
-      if (of != results.end() && size > 0) of->scale = std::abs(a.value[0]) / size;
-    }
-  }
-}
-
-}  // namespace
 
 // Adjoints of mean_slide and mean_stick, which every derivative needs, of three moments and of E_V.
 // With a single static level mean_stick needs none. Where excursions start from several levels each

@@ -6,8 +6,6 @@
 #include <numeric>
 
 #include "stickslip/case/slip_rows.hpp"
-#include "stickslip/linalg/petsc.hpp"
-#include "stickslip/quantities/plan.hpp"
 
 namespace stickslip::quantities {
 namespace {
@@ -23,6 +21,34 @@ double mean_path(const Excursion& excursion) {
 }
 
 double speed(double, double, double v) { return std::abs(v); }
+
+void find_moments(Computation& computation) {
+  const auto moments = slip_moments(computation.systems, computation.distribution());
+  const Uncertain net = computation.process().drifts() ? moments.net_mean : Uncertain{};
+  auto& results = computation.results();
+  results.push_back(scalar(cases::kVarSlip, moments.variance));
+  results.push_back(scalar(cases::kMeanSlipNet, net));
+  results.push_back(scalar(cases::kVarSlipNet, moments.net_variance));
+}
+
+void find_distribution(Computation& computation) {
+  const auto& distance = computation.question().distance;
+  const auto slips = slip_distribution(computation.systems, computation.distribution(), distance,
+                                       computation.tolerance());
+  append_distribution(cases::kDensitySlip, cases::kCdfSlip, distance, slips, computation.results());
+  computation.report("slip_pairs", slips.pairs,
+                     "pairs of Krylov vectors in the reduced model of slips");
+}
+
+// Slips of the length d begin and end in layers at v = 0. Of bodies with the acceleration a these
+// are resolved five times finer than sqrt(a d/12).
+void resolve_lengths(Planner& planner) {
+  const auto process = planner.given().scene.meant(), mirrored = process.mirrored();
+  const double force = std::max(process.net_force(process.noise.highest()),
+                                mirrored.net_force(mirrored.noise.highest()));
+  planner.resolve_rate(
+      5 * std::sqrt(kFastestOnContour * force / least_positive(planner.question().distance)));
+}
 
 }  // namespace
 
@@ -72,38 +98,6 @@ DurationDistribution slip_distribution(generator::Systems& systems,
 void append_mean_slip(const Excursion& excursion, Results& results) {
   results.push_back(scalar(cases::kMeanSlip, mean_path(excursion), 0));
 }
-
-namespace {
-
-void find_moments(Computation& computation) {
-  const auto moments = slip_moments(computation.systems, computation.distribution());
-  const Uncertain net = computation.process().drifts() ? moments.net_mean : Uncertain{};
-  auto& results = computation.results();
-  results.push_back(scalar(cases::kVarSlip, moments.variance));
-  results.push_back(scalar(cases::kMeanSlipNet, net));
-  results.push_back(scalar(cases::kVarSlipNet, moments.net_variance));
-}
-
-void find_distribution(Computation& computation) {
-  const auto& distance = computation.question().distance;
-  const auto slips = slip_distribution(computation.systems, computation.distribution(), distance,
-                                       computation.tolerance());
-  append_distribution(cases::kDensitySlip, cases::kCdfSlip, distance, slips, computation.results());
-  computation.report("slip_pairs", slips.pairs,
-                     "pairs of Krylov vectors in the reduced model of slips");
-}
-
-// Slips of the length d begin and end in layers at v = 0. Of bodies with the acceleration a these
-// are resolved five times finer than sqrt(a d/12).
-void resolve_lengths(Planner& planner) {
-  const auto process = planner.given().scene.meant(), mirrored = process.mirrored();
-  const double force = std::max(process.net_force(process.noise.highest()),
-                                mirrored.net_force(mirrored.noise.highest()));
-  planner.resolve_rate(
-      5 * std::sqrt(kFastestOnContour * force / least_positive(planner.question().distance)));
-}
-
-}  // namespace
 
 void mean_slip_tasks(Planner& planner) {
   planner.append_from([](const auto&, const Excursion& excursion, Results& results) {

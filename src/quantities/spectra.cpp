@@ -8,27 +8,16 @@
 #include <array>
 #include <cmath>
 #include <complex>
-#include <functional>
 #include <limits>
-#include <memory>
 #include <numbers>
 
 #include "stickslip/case/spectrum_rows.hpp"
 #include "stickslip/case/sticking_rows.hpp"
-#include "stickslip/generator/resolvents.hpp"
-#include "stickslip/generator/static_chain.hpp"
-#include "stickslip/generator/velocity_mesh.hpp"
-#include "stickslip/linalg/petsc.hpp"
-#include "stickslip/linalg/vectors.hpp"
-#include "stickslip/model/noise_chain.hpp"
-#include "stickslip/quantities/engines/excursions.hpp"
 #include "stickslip/quantities/engines/inversion.hpp"
-#include "stickslip/quantities/plan.hpp"
 
 namespace stickslip::quantities {
 namespace {
 
-using generator::KolmogorovOperator;
 using generator::StaticChain;
 using generator::StaticPhase;
 using generator::Symmetry;
@@ -145,42 +134,6 @@ double correlation_time(ProcessPencil& pencil, Vec b, Vec c) {
   return time;
 }
 
-/// S_v at single frequencies by complex solves.
-class DirectSpectrum {
- public:
-  DirectSpectrum(generator::Systems& systems, const StationaryDistribution& distribution)
-      : a_(generator::assemble(systems.comm(), systems.discretisation(), 0,
-                               distribution.velocity_symmetry(), StaticPhase::kept,
-                               systems.statistics())),
-        statistics_(systems.statistics()),
-        turn_(1 / systems.process().noise.correlation_time()),
-        least_(distribution.process().symmetric() ? 0 : kNearZero * turn_),
-        velocity_(distribution.velocity(a_)),
-        ab_(a_.zeros()),
-        ca_(a_.zeros()) {
-    check(MatMult(a_.matrix(), velocity_.b, ab_));
-    check(MatMultTranspose(a_.matrix(), velocity_.c, ca_));
-  }
-
-  [[nodiscard]] Uncertain operator()(double omega) {
-    generator::ComplexSolver solver(a_, std::complex(0.0, std::max(omega, least_)), statistics_);
-    const bool far = omega > turn_;
-    const auto solution =
-        solver.solve({linalg::copy_of(far ? ab_ : velocity_.b), a_.zeros()}, false);
-    const Vec c = far ? ca_ : velocity_.c;
-    const double factor = far ? -2 / (omega * omega) : 2;
-    return {factor * linalg::dot(c, solution.x.real),
-            std::abs(factor * linalg::dot(c, solution.correction.real))};
-  }
-
- private:
-  KolmogorovOperator a_;
-  linalg::SolverStatistics& statistics_;
-  double turn_, least_;
-  StationaryDistribution::Velocity velocity_;
-  linalg::VecHandle ab_, ca_;
-};
-
 }  // namespace
 
 SpectrumShape shape_of(const Density& s, double tau, double bulk_error, double error) {
@@ -252,9 +205,25 @@ ReducedSpectrum reduced_spectrum(generator::Systems& systems,
 std::vector<Uncertain> direct_spectrum(generator::Systems& systems,
                                        const StationaryDistribution& distribution,
                                        const std::vector<double>& omega) {
-  DirectSpectrum direct(systems, distribution);
+  const auto a = generator::assemble(systems.comm(), systems.discretisation(), 0,
+                                     distribution.velocity_symmetry(), StaticPhase::kept,
+                                     systems.statistics());
+  const double turn = 1 / systems.process().noise.correlation_time(),
+               least = distribution.process().symmetric() ? 0 : kNearZero * turn;
+  const auto [b, c] = distribution.velocity(a);
+  const linalg::VecHandle ab = a.zeros(), ca = a.zeros();
+  check(MatMult(a.matrix(), b, ab));
+  check(MatMultTranspose(a.matrix(), c, ca));
   std::vector<Uncertain> values;
-  for (double w : omega) values.push_back(direct(w));
+  for (double w : omega) {
+    generator::ComplexSolver solver(a, std::complex(0.0, std::max(w, least)), systems.statistics());
+    const bool far = w > turn;
+    const auto solution = solver.solve({linalg::copy_of(far ? ab : b), a.zeros()}, false);
+    const Vec seen = far ? ca : c;
+    const double factor = far ? -2 / (w * w) : 2;
+    values.push_back({factor * linalg::dot(seen, solution.x.real),
+                      std::abs(factor * linalg::dot(seen, solution.correction.real))});
+  }
   return values;
 }
 

@@ -27,6 +27,76 @@ double sum(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0);
 }
 
+// Probabilities of the places of a Markov chain. Where a body never rests on some static levels,
+// starts that are reached from these alone have none; those from which the fewest places are
+// reached are taken for ever.
+std::vector<double> shares_of(int count, const std::vector<linalg::RateElimination::Rate>& steps) {
+  std::vector<model::Transition> taken;
+  for (const auto& [from, to, p] : steps) {
+    if (p > 0) taken.push_back({static_cast<std::size_t>(from), static_cast<std::size_t>(to), p});
+  }
+  const auto size = static_cast<std::size_t>(count);
+  std::vector<bool> recurs;
+  for (std::size_t first = 0; first < size; ++first) {
+    auto reached = model::reached_from(first, size, taken);
+    const bool fewer = std::ranges::count(reached, true) < std::ranges::count(recurs, true);
+    if (first == 0 || fewer) recurs = std::move(reached);
+  }
+  std::vector<int> place(size, -1);
+  int places = 0;
+  for (std::size_t n = 0; n < size; ++n) place[n] = recurs[n] ? places++ : -1;
+  std::vector<linalg::RateElimination::Rate> among;
+  for (const auto& [from, to, p] : steps) {
+    if (recurs[from] && recurs[to]) among.push_back({place[from], place[to], p});
+  }
+  const std::vector<double> none(static_cast<std::size_t>(places), 0.0);
+  const auto known = linalg::RateElimination(none, among).stationary();
+  std::vector<double> shares(size, 0.0);
+  for (std::size_t n = 0; n < size; ++n) shares[n] = recurs[n] ? known[place[n]] : 0;
+  return shares;
+}
+
+// What the spring adds: sums over all nodes, in motion on either branch and at rest.
+void append_positions(const model::Process& process, const Excursion& excursion, Results& results) {
+  double p = 0, square = 0, with_noise = 0;
+  const auto add = [&](const model::NoiseChain& chain, int i, double sign, double time) {
+    const double position = chain.position(i);
+    p += sign * position * time;
+    square += position * position * time;
+    with_noise += chain.noise(i) * position * time;
+  };
+  const auto other = process.mirrored().noise;
+  const auto count = static_cast<std::size_t>(process.noise.count());
+  for (std::size_t n = 0; n < excursion.slide_time.size(); ++n) {
+    const bool upper = n < count;
+    const auto& chain = upper ? process.noise : other;
+    add(chain, chain.lowest() + static_cast<int>(n % count), upper ? 1 : -1,
+        excursion.slide_time[n]);
+  }
+  for (std::size_t n = 0; n < excursion.stick_time.size(); ++n) {
+    add(process.noise, process.lowest_static() + static_cast<int>(n), 1, excursion.stick_time[n]);
+  }
+  const double total = excursion.mean_excursion();
+  // A bias leaves the process its symmetry, about g/K.
+  const auto& noise = process.noise;
+  const bool centred = noise.position(noise.lowest()) == -noise.position(noise.highest());
+  results.push_back(scalar(cases::kEP, process.drifts() || !centred ? p / total : 0, 0));
+  results.push_back(scalar(cases::kEP2, square / total, 0));
+  results.push_back(scalar(cases::kEXP, with_noise / total, 0));
+}
+
+// Of the noise alone, which nodes of one level and several positions share.
+model::NoiseMoments moments_of_pairs(const model::NoiseChain& noise, double mu_s) {
+  const auto p = model::stationary_distribution(noise);
+  model::NoiseMoments moments{0, 0, 0};
+  for (int i = noise.lowest(); i <= noise.highest(); ++i) {
+    const double x = noise.noise(i), share = p[static_cast<std::size_t>(i - noise.lowest())];
+    (std::abs(x) <= mu_s ? moments.within : moments.beyond) += share;
+    moments.square += share * x * x;
+  }
+  return moments;
+}
+
 }  // namespace
 
 double Excursion::mean_slide() const { return sum(slide_time); }
@@ -78,39 +148,6 @@ double Excursion::conservation_defect(const generator::Discretisation& discretis
 Starts Starts::upwards(const model::Process& process) {
   return {{process.exit_level(true)}, {1}, {1}};
 }
-
-namespace {
-
-// Probabilities of the places of a Markov chain. Where a body never rests on some static levels,
-// starts that are reached from these alone have none; those from which the fewest places are
-// reached are taken for ever.
-std::vector<double> shares_of(int count, const std::vector<linalg::RateElimination::Rate>& steps) {
-  std::vector<model::Transition> taken;
-  for (const auto& [from, to, p] : steps) {
-    if (p > 0) taken.push_back({static_cast<std::size_t>(from), static_cast<std::size_t>(to), p});
-  }
-  const auto size = static_cast<std::size_t>(count);
-  std::vector<bool> recurs;
-  for (std::size_t first = 0; first < size; ++first) {
-    auto reached = model::reached_from(first, size, taken);
-    const bool fewer = std::ranges::count(reached, true) < std::ranges::count(recurs, true);
-    if (first == 0 || fewer) recurs = std::move(reached);
-  }
-  std::vector<int> place(size, -1);
-  int places = 0;
-  for (std::size_t n = 0; n < size; ++n) place[n] = recurs[n] ? places++ : -1;
-  std::vector<linalg::RateElimination::Rate> among;
-  for (const auto& [from, to, p] : steps) {
-    if (recurs[from] && recurs[to]) among.push_back({place[from], place[to], p});
-  }
-  const std::vector<double> none(static_cast<std::size_t>(places), 0.0);
-  const auto known = linalg::RateElimination(none, among).stationary();
-  std::vector<double> shares(size, 0.0);
-  for (std::size_t n = 0; n < size; ++n) shares[n] = recurs[n] ? known[place[n]] : 0;
-  return shares;
-}
-
-}  // namespace
 
 Starts chain_of_starts(const model::Process& process, std::vector<int> levels,
                        const std::vector<Excursion>& from) {
@@ -198,39 +235,6 @@ void append_moments(const generator::Discretisation& discretisation, const Excur
                            drifts ? rounding / total : 0));
 }
 
-namespace {
-
-// What the spring adds: sums over all nodes, in motion on either branch and at rest.
-void append_positions(const model::Process& process, const Excursion& excursion, Results& results) {
-  double p = 0, square = 0, with_noise = 0;
-  const auto add = [&](const model::NoiseChain& chain, int i, double sign, double time) {
-    const double position = chain.position(i);
-    p += sign * position * time;
-    square += position * position * time;
-    with_noise += chain.noise(i) * position * time;
-  };
-  const auto other = process.mirrored().noise;
-  const auto count = static_cast<std::size_t>(process.noise.count());
-  for (std::size_t n = 0; n < excursion.slide_time.size(); ++n) {
-    const bool upper = n < count;
-    const auto& chain = upper ? process.noise : other;
-    add(chain, chain.lowest() + static_cast<int>(n % count), upper ? 1 : -1,
-        excursion.slide_time[n]);
-  }
-  for (std::size_t n = 0; n < excursion.stick_time.size(); ++n) {
-    add(process.noise, process.lowest_static() + static_cast<int>(n), 1, excursion.stick_time[n]);
-  }
-  const double total = excursion.mean_excursion();
-  // A bias leaves the process its symmetry, about g/K.
-  const auto& noise = process.noise;
-  const bool centred = noise.position(noise.lowest()) == -noise.position(noise.highest());
-  results.push_back(scalar(cases::kEP, process.drifts() || !centred ? p / total : 0, 0));
-  results.push_back(scalar(cases::kEP2, square / total, 0));
-  results.push_back(scalar(cases::kEXP, with_noise / total, 0));
-}
-
-}  // namespace
-
 void moments_tasks(Planner& planner) {
   planner.append_from([](const auto& discretisation, const Excursion& excursion, Results& results) {
     append_moments(discretisation, excursion, results);
@@ -273,22 +277,6 @@ double stick_density_at_zero(const model::Process& process, const std::vector<do
   const auto rates = process.exit_rates();
   return std::inner_product(rates.begin(), rates.end(), entry.begin(), 0.0);
 }
-
-namespace {
-
-// Of the noise alone, which nodes of one level and several positions share.
-model::NoiseMoments moments_of_pairs(const model::NoiseChain& noise, double mu_s) {
-  const auto p = model::stationary_distribution(noise);
-  model::NoiseMoments moments{0, 0, 0};
-  for (int i = noise.lowest(); i <= noise.highest(); ++i) {
-    const double x = noise.noise(i), share = p[static_cast<std::size_t>(i - noise.lowest())];
-    (std::abs(x) <= mu_s ? moments.within : moments.beyond) += share;
-    moments.square += share * x * x;
-  }
-  return moments;
-}
-
-}  // namespace
 
 void append_noise_distribution(const model::Process& process, Results& results) {
   const auto& noise = process.noise;

@@ -115,39 +115,6 @@ void expectation_of(Tally& tally, std::size_t n) {
   });
 }
 
-}  // namespace
-
-void expectation_tally(Tally& tally) {
-  for (std::size_t n = 0; n < tally.question().observables.size(); ++n) expectation_of(tally, n);
-}
-
-void averages_tally(Tally& tally) {
-  for (std::size_t n = 0; n < tally.question().observables.size(); ++n) average(tally, n);
-  tally.wanted().integrals = true;
-  const auto& friction = tally.process().friction;
-  std::optional<Sums<ObservedPhases>> power;
-  if (friction.weakens()) power = observe(tally, model::friction_power(friction));
-  const auto m = tally.sums([](const Excursion& e) {
-    return Paths{e.slide, e.stick, e.path, e.drift};
-  });
-  tally.report([=](const Tally& t) -> Estimates {
-    // mu_d+ E[V+] + mu_d- E[V-] where friction does not depend on the velocity.
-    const double up = t.process().friction.mu_d, down = t.process().friction.mirrored().mu_d;
-    const Smooth constant =
-        (up + down) / 2 * m.overall(&Paths::path) + (up - down) / 2 * m.overall(&Paths::drift, -1);
-    return {{&cases::kSlipRate, {m.over_time(1)}},
-            {&cases::kFrictionPower, {power ? stationary_mean(*power) : m.over_time(constant)}}};
-  });
-}
-
-void noise_law_tally(Tally& tally) {
-  tally.wanted().noise = true;
-  tally.over_time(cases::kPWithin, &Excursion::within);
-  tally.over_time(cases::kEX2, &Excursion::noise_square);
-}
-
-namespace {
-
 // Of sliding phases upwards and downwards, as they occur in cycles, and of all.
 void entry_laws_of_cycles(Tally& tally, const std::vector<double>& levels) {
   struct Hits {
@@ -180,6 +147,35 @@ void entry_laws_of_cycles(Tally& tally, const std::vector<double>& levels) {
 }
 
 }  // namespace
+
+void expectation_tally(Tally& tally) {
+  for (std::size_t n = 0; n < tally.question().observables.size(); ++n) expectation_of(tally, n);
+}
+
+void averages_tally(Tally& tally) {
+  for (std::size_t n = 0; n < tally.question().observables.size(); ++n) average(tally, n);
+  tally.wanted().integrals = true;
+  const auto& friction = tally.process().friction;
+  std::optional<Sums<ObservedPhases>> power;
+  if (friction.weakens()) power = observe(tally, model::friction_power(friction));
+  const auto m = tally.sums([](const Excursion& e) {
+    return Paths{e.slide, e.stick, e.path, e.drift};
+  });
+  tally.report([=](const Tally& t) -> Estimates {
+    // mu_d+ E[V+] + mu_d- E[V-] where friction does not depend on the velocity.
+    const double up = t.process().friction.mu_d, down = t.process().friction.mirrored().mu_d;
+    const Smooth constant =
+        (up + down) / 2 * m.overall(&Paths::path) + (up - down) / 2 * m.overall(&Paths::drift, -1);
+    return {{&cases::kSlipRate, {m.over_time(1)}},
+            {&cases::kFrictionPower, {power ? stationary_mean(*power) : m.over_time(constant)}}};
+  });
+}
+
+void noise_law_tally(Tally& tally) {
+  tally.wanted().noise = true;
+  tally.over_time(cases::kPWithin, &Excursion::within);
+  tally.over_time(cases::kEX2, &Excursion::noise_square);
+}
 
 void entry_law_tally(Tally& tally) {
   std::vector<double> levels;

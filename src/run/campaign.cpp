@@ -14,14 +14,12 @@
 #include <cmath>
 #include <cstring>
 #include <iterator>
-#include <memory>
 #include <optional>
 #include <set>
 #include <stdexcept>
 
 #include "stickslip/base/errors.hpp"
 #include "stickslip/base/files.hpp"
-#include "stickslip/base/text.hpp"
 #include "stickslip/generator/static_chain.hpp"
 #include "stickslip/linalg/session.hpp"
 #include "stickslip/model/effect.hpp"

@@ -5,12 +5,7 @@
 
 #include "stickslip/case/force_rows.hpp"
 #include "stickslip/linalg/session.hpp"
-#include "stickslip/linalg/solver_options.hpp"
-#include "stickslip/quantities/excursion.hpp"
 #include "stickslip/quantities/given_force.hpp"
-#include "stickslip/run/estimates.hpp"
-#include "stickslip/run/evaluation.hpp"
-#include "stickslip/run/refine.hpp"
 
 namespace stickslip::run {
 namespace {
@@ -118,6 +113,22 @@ class Predictor {
   double speed_ = linalg::measured_speed();
 };
 
+bool closed_noise_distribution(const cases::Case& given) {
+  return given.question.wants(Quantity::noise_law) && given.method.row().closed_noise_law;
+}
+
+Outcome by_simulation(MPI_Comm comm, const cases::Case& given, const std::string& checkpoint,
+                      const SimulationProgress& progress) {
+  Outcome outcome;
+  auto simulated = simulate(comm, given, checkpoint, progress);
+  outcome.results = std::move(simulated.results);
+  outcome.reached = simulated.reached;
+  outcome.shortfall = simulated.shortfall;
+  outcome.next_digit_seconds = 100 * simulated.state.seconds;
+  outcome.simulation = std::move(simulated);
+  return outcome;
+}
+
 }  // namespace
 
 PredictedStep predicted_step(MPI_Comm comm, const cases::Case& given, const quantities::Plan& plan,
@@ -146,26 +157,6 @@ Prediction predict(MPI_Comm comm, const cases::Case& given) {
   }
   return prediction;
 }
-
-namespace {
-
-bool closed_noise_distribution(const cases::Case& given) {
-  return given.question.wants(Quantity::noise_law) && given.method.row().closed_noise_law;
-}
-
-Outcome by_simulation(MPI_Comm comm, const cases::Case& given, const std::string& checkpoint,
-                      const SimulationProgress& progress) {
-  Outcome outcome;
-  auto simulated = simulate(comm, given, checkpoint, progress);
-  outcome.results = std::move(simulated.results);
-  outcome.reached = simulated.reached;
-  outcome.shortfall = simulated.shortfall;
-  outcome.next_digit_seconds = 100 * simulated.state.seconds;
-  outcome.simulation = std::move(simulated);
-  return outcome;
-}
-
-}  // namespace
 
 bool needs_system(const cases::Case& given) {
   const bool closed = closed_noise_distribution(given);

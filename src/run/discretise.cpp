@@ -8,10 +8,7 @@
 #include <numeric>
 
 #include "stickslip/base/errors.hpp"
-#include "stickslip/base/text.hpp"
 #include "stickslip/generator/solver_policy.hpp"
-#include "stickslip/generator/velocity_mesh.hpp"
-#include "stickslip/generator/velocity_methods.hpp"
 #include "stickslip/linalg/session.hpp"
 
 namespace stickslip::run {
@@ -93,10 +90,6 @@ std::shared_ptr<const generator::Nodes> grouped(const model::Process& process,
   return std::make_shared<generator::Nodes>(process, grouping);
 }
 
-}  // namespace
-
-namespace {
-
 // By how much log of the probability of level i falls from the one before, where paths are weighted
 // with exp(s x(t)): as in tail_velocity(), of bodies as fast as the level makes them.
 double weighted_fall(const model::Process& process, int i, double step, double tilt) {
@@ -107,6 +100,26 @@ double weighted_fall(const model::Process& process, int i, double step, double t
   const double v = process.drag.terminal_velocity(process.net_force(i));
   const double square = rate * rate - 4 * tilt * v / diffusivity;
   return square > 0 ? -step * std::sqrt(square) : kInfinity;
+}
+
+void set_levels(const model::Scene& scene, double tolerance, const generator::Rates& rates,
+                Resolution& r) {
+  if (scene.projector() != nullptr) {
+    r.levels = std::max(r.degree, 2);
+    r.table_levels = scene.process(r.levels).noise.count();
+    return;
+  }
+  r.levels = scene.noise_levels.value_or(levels_for(scene, tolerance, rates));
+  if (scene.noise.table) r.table_levels = scene.process(r.levels).noise.count();
+}
+
+// Three times the tolerance where something is cut: 1.2 was seen of the noise for a variance of
+// durations, 0.3 of the velocity for that of slips, where the tolerance is a hundredth.
+double truncation(const model::Scene& scene, const Resolution& r, double tolerance) {
+  constexpr double margin = 3;
+  const bool cuts_levels = r.levels < scene.meant().noise.highest();
+  const bool cuts_velocities = !scene.v_max && r.v_max < scene.process(r.levels).terminal_speed();
+  return cuts_levels || cuts_velocities ? margin * tolerance : 0;
 }
 
 }  // namespace
@@ -145,21 +158,6 @@ int levels_for(const model::Scene& scene, double tolerance, const generator::Rat
   return std::max(last(process), last(process.mirrored()));
 }
 
-namespace {
-
-void set_levels(const model::Scene& scene, double tolerance, const generator::Rates& rates,
-                Resolution& r) {
-  if (scene.projector() != nullptr) {
-    r.levels = std::max(r.degree, 2);
-    r.table_levels = scene.process(r.levels).noise.count();
-    return;
-  }
-  r.levels = scene.noise_levels.value_or(levels_for(scene, tolerance, rates));
-  if (scene.noise.table) r.table_levels = scene.process(r.levels).noise.count();
-}
-
-}  // namespace
-
 double velocity_end(const model::Scene& scene, int levels, double tolerance, double tilt) {
   const auto process = scene.process(levels);
   const double terminal = process.terminal_speed();
@@ -168,19 +166,6 @@ double velocity_end(const model::Scene& scene, int levels, double tolerance, dou
   // Holding states cost a little: a truncation must save something.
   return tail < 0.8 * terminal ? tail : terminal;
 }
-
-namespace {
-
-// Three times the tolerance where something is cut: 1.2 was seen of the noise for a variance of
-// durations, 0.3 of the velocity for that of slips, where the tolerance is a hundredth.
-double truncation(const model::Scene& scene, const Resolution& r, double tolerance) {
-  constexpr double margin = 3;
-  const bool cuts_levels = r.levels < scene.meant().noise.highest();
-  const bool cuts_velocities = !scene.v_max && r.v_max < scene.process(r.levels).terminal_speed();
-  return cuts_levels || cuts_velocities ? margin * tolerance : 0;
-}
-
-}  // namespace
 
 Resolution hp_resolution(const model::Scene& scene, int degree, int layers, double tolerance,
                          const generator::Rates& rates, const generator::Grouping& grouping) {

@@ -10,10 +10,8 @@
 #include <limits>
 #include <numeric>
 #include <optional>
-#include <vector>
 
 #include "stickslip/base/statistics.hpp"
-#include "stickslip/base/text.hpp"
 
 namespace stickslip::run {
 namespace {

@@ -10,7 +10,6 @@
 #include "stickslip/base/errors.hpp"
 #include "stickslip/case/sticking_rows.hpp"
 #include "stickslip/generator/static_chain.hpp"
-#include "stickslip/linalg/dense.hpp"
 #include "stickslip/quantities/durations.hpp"
 
 namespace stickslip::run {

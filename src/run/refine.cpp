@@ -5,20 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <map>
 #include <memory>
-#include <optional>
 #include <set>
-#include <string>
 #include <utility>
 
 #include "stickslip/base/errors.hpp"
-#include "stickslip/base/text.hpp"
 #include "stickslip/linalg/session.hpp"
-#include "stickslip/quantities/excursion.hpp"
-#include "stickslip/quantities/plan.hpp"
 #include "stickslip/run/carry_out.hpp"
-#include "stickslip/run/estimates.hpp"
 
 namespace stickslip::run {
 namespace {

@@ -374,12 +374,6 @@ Evaluation by_hitting(const Problem& problem) {
 // Prefix of the PETSc options of this eigensolver.
 constexpr const char* kNullPrefix = "null_";
 
-void normalise(Vec pi) {
-  PetscScalar mass = 0;
-  check(VecSum(pi, &mass));
-  check(VecScale(pi, 1.0 / mass));
-}
-
 // Smallest entry, 0 if none is negative; on an upwind grid pi is a probability.
 double most_negative(MPI_Comm comm, Vec pi) {
   double smallest = 0;
@@ -443,12 +437,10 @@ Evaluation by_null_vector(const Problem& problem) {
   const double target = -1e-6 / problem.discretisation.process.noise.correlation_time();
   linalg::Eigensolver solver(transposed, kNullPrefix, target, 1, problem.statistics);
   const Vec before = solver.pairs()[0].real;
-  normalise(before);
-  linalg::VecHandle pi;
-  check(VecDuplicate(before, pi.out()));
-  check(VecCopy(before, pi));
+  linalg::scale_to_sum_one(before);
+  const linalg::VecHandle pi = linalg::copy_of(before);
   solver.iterate(pi);
-  normalise(pi);
+  linalg::scale_to_sum_one(pi);
 
   Evaluation evaluation;
   std::vector<Uncertain> values;

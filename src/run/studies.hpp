@@ -1,7 +1,6 @@
 #pragma once
 /// The studies one by one, and what they share.
 
-#include <cmath>
 #include <limits>
 
 #include "stickslip/run/study.hpp"

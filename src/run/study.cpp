@@ -6,12 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <functional>
-#include <span>
 
 #include "stickslip/base/errors.hpp"
-#include "stickslip/base/text.hpp"
-#include "stickslip/linalg/dense.hpp"
 #include "stickslip/linalg/petsc.hpp"
 #include "stickslip/linalg/session.hpp"
 #include "stickslip/model/effect.hpp"
@@ -322,6 +318,13 @@ Study study_of(const Context& context, const std::vector<Series>& all) {
   return study;
 }
 
+cases::Case upwind_case(const cases::Case& given) {
+  cases::Case upwind = given;
+  upwind.method = {};
+  upwind.method.scheme = cases::Scheme::upwind;
+  return upwind;
+}
+
 }  // namespace
 
 Study study_steps(const Context& context) {
@@ -396,17 +399,6 @@ cases::Case with_delta(const cases::Case& given, double delta) {
   other.method = {};
   return other;
 }
-
-namespace {
-
-cases::Case upwind_case(const cases::Case& given) {
-  cases::Case upwind = given;
-  upwind.method = {};
-  upwind.method.scheme = cases::Scheme::upwind;
-  return upwind;
-}
-
-}  // namespace
 
 void require_upwind_memory(const Context& context, const cases::Case& given, int points,
                            double tail) {

@@ -4,13 +4,7 @@
 #include <boost/math/quadrature/gauss.hpp>
 #include <boost/math/tools/roots.hpp>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstdint>
 #include <utility>
-
-#include "stickslip/base/text.hpp"
 
 namespace stickslip::simulation {
 namespace {

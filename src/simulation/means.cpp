@@ -2,7 +2,6 @@
 
 #include <boost/math/distributions/binomial.hpp>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -47,6 +46,17 @@ std::valarray<Complex> sum(const Smooth& a, Complex by_a, const Smooth& b, Compl
   if (b.slope.size() == 0) return a.slope * by_a;
   if (a.slope.size() == 0) return b.slope * by_b;
   return a.slope * by_a + b.slope * by_b;
+}
+
+Estimate proportion(double successes, double trials) {
+  using Binomial = boost::math::binomial_distribution<double>;
+  constexpr auto kind = Binomial::jeffreys_prior_interval;
+  constexpr double tail = 0.025;
+  const double low =
+      successes <= 0 ? 0 : Binomial::find_lower_bound_on_p(trials, successes, tail, kind);
+  const double high =
+      successes >= trials ? 1 : Binomial::find_upper_bound_on_p(trials, successes, tail, kind);
+  return {successes / trials, low, high};
 }
 
 }  // namespace
@@ -99,21 +109,6 @@ Estimate Means::estimate(const Smooth& f) const {
   const double half = kNormalQuantile * std::sqrt(variance(f)), value = f.value.real();
   return {value, value - half, value + half};
 }
-
-namespace {
-
-Estimate proportion(double successes, double trials) {
-  using Binomial = boost::math::binomial_distribution<double>;
-  constexpr auto kind = Binomial::jeffreys_prior_interval;
-  constexpr double tail = 0.025;
-  const double low =
-      successes <= 0 ? 0 : Binomial::find_lower_bound_on_p(trials, successes, tail, kind);
-  const double high =
-      successes >= trials ? 1 : Binomial::find_upper_bound_on_p(trials, successes, tail, kind);
-  return {successes / trials, low, high};
-}
-
-}  // namespace
 
 Comoments Histogram::moments(std::size_t side, const Weight& weight) const {
   Comoments moments(2);

@@ -4,7 +4,6 @@
 #include <optional>
 
 #include "slide.hpp"
-#include "stickslip/model/noise_chain.hpp"
 
 namespace stickslip::simulation {
 namespace {

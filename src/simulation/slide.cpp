@@ -10,8 +10,6 @@
 #include <tuple>
 #include <utility>
 
-#include "stickslip/base/text.hpp"
-
 namespace stickslip::simulation {
 namespace {
 

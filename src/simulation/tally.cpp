@@ -10,17 +10,11 @@
 #include <stdexcept>
 
 #include "stickslip/base/errors.hpp"
-#include "stickslip/base/text.hpp"
 #include "stickslip/case/displacement_rows.hpp"
 #include "stickslip/case/duration_rows.hpp"
 #include "stickslip/case/passage_rows.hpp"
 
 namespace stickslip::simulation {
-namespace {
-
-using cases::Quantity;
-
-}  // namespace
 
 using Follow = void(Tally&);
 
@@ -31,6 +25,8 @@ Follow sticking_tally, moments_tally, averages_tally, noise_law_tally, entry_law
     first_passage_tally, passage_transform_tally, passage_distribution_tally;
 
 namespace {
+
+using cases::Quantity;
 
 // All that can be simulated, in the order of results.
 constexpr std::pair<Quantity, Follow*> kAll[] = {

@@ -1,17 +1,11 @@
 #include "stickslip/simulation/walk.hpp"
 
-#include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdint>
 #include <cstdlib>
-#include <limits>
 #include <numeric>
-#include <optional>
 #include <stdexcept>
 
 #include "slide.hpp"
-#include "stickslip/base/text.hpp"
 
 namespace stickslip::simulation {
 namespace {

@@ -152,7 +152,7 @@ TEST_CASE("factorization: an iteration that stops early ends every kind of solve
   const auto stopped = Catch::Contains("-short_ stopped: DIVERGED_ITS");
   CHECK_THROWS_WITH(solver.solve(b), stopped);
   CHECK_THROWS_WITH(solver.solve_once(b, x), stopped);
-  CHECK_THROWS_WITH(solver.solve_transposed_once(b, x), stopped);
+  CHECK_THROWS_WITH(solver.solve_once(b, x, true), stopped);
 }
 
 TEST_CASE("factorization: a singular matrix is refused, whatever the package reports") {

@@ -3,9 +3,7 @@
 
 #include <petscmat.h>
 
-#include <complex>
 #include <memory>
-#include <utility>
 #include <vector>
 
 #include "stickslip/generator/element_system.hpp"

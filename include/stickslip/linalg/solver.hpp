@@ -109,8 +109,7 @@ class Factorization {
 
   /// A x = b and A^T x = b without residual and iterative refinement, for directions that need not
   /// be exact.
-  void solve_once(Vec b, Vec x);
-  void solve_transposed_once(Vec b, Vec x);
+  void solve_once(Vec b, Vec x, bool transposed = false);
 
   /// Orders and analyses `matrix` as the constructor would, and stops there; zeros for solvers that
   /// report nothing. Collective.

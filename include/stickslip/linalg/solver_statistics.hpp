@@ -4,7 +4,6 @@
 #include <petsclog.h>
 
 #include <cstdint>
-#include <string>
 
 namespace stickslip::linalg {
 

@@ -8,7 +8,6 @@
 
 #include <exception>
 #include <iterator>
-#include <span>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -220,6 +219,13 @@ void sum_over_ranks(MPI_Comm comm, Numbers& numbers) {
   VecHandle both = copy_of(a);
   check(VecPointwiseMult(both, a, b));
   return both;
+}
+
+/// Scales the entries such that their sum is 1. Collective.
+inline void scale_to_sum_one(Vec x) {
+  PetscScalar sum = 0;
+  check(VecSum(x, &sum));
+  check(VecScale(x, 1.0 / sum));
 }
 
 /// Real part of sum_n a_n b_n, without conjugation. Collective.

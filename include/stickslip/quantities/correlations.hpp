@@ -1,7 +1,6 @@
 #pragma once
 /// How the process forgets: autocorrelation, and expectations given the start.
 
-#include <string>
 #include <vector>
 
 #include "stickslip/generator/resolvents.hpp"

@@ -1,7 +1,6 @@
 #pragma once
 /// Error estimates of results: what refinement shows, and what it cannot show.
 
-#include <optional>
 #include <string>
 #include <vector>
 

@@ -2,16 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <map>
 #include <numeric>
 #include <tuple>
 #include <utility>
 
-#include "stickslip/generator/resolvents.hpp"
-#include "stickslip/linalg/dense.hpp"
-#include "stickslip/linalg/petsc.hpp"
-#include "stickslip/linalg/vectors.hpp"
 #include "stickslip/quantities/correlations.hpp"
 
 namespace stickslip::quantities {

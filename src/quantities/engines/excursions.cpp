@@ -8,13 +8,7 @@
 #include <numeric>
 #include <utility>
 
-#include "stickslip/base/errors.hpp"
-#include "stickslip/generator/generator.hpp"
-#include "stickslip/generator/static_chain.hpp"
-#include "stickslip/linalg/dense.hpp"
-#include "stickslip/linalg/petsc.hpp"
 #include "stickslip/linalg/session.hpp"
-#include "stickslip/linalg/vectors.hpp"
 
 namespace stickslip::quantities {
 namespace {
@@ -30,6 +24,41 @@ std::vector<double> real_parts(const std::vector<PetscScalar>& values) {
   std::vector<double> parts;
   for (const auto& value : values) parts.push_back(PetscRealPart(value));
   return parts;
+}
+
+// Means over excursions of which nu is the occupation, normalised.
+Excursion excursion_of(const KolmogorovOperator& a, Vec nu, double lost) {
+  const auto& [process, noise, velocities] = a.discretisation();
+  const auto nodes = static_cast<std::size_t>(noise->count());
+  const bool symmetry_reduced = a.states().symmetry_reduced();
+  Excursion e;
+  for (auto* sums : {&e.slide_time, &e.slide_distance, &e.slide_square}) {
+    sums->resize((symmetry_reduced ? 1 : 2) * nodes);
+  }
+  const linalg::ReadView local(nu);
+  PetscInt at = 0;
+  a.states().for_each_local([&, &velocities_of_v = *velocities,
+                             &nodes_of_x = *noise](const State& state) {
+    const double mass = PetscRealPart(local[at++]), v = generator::speed_of(state, velocities_of_v);
+    const int node = state.branch == Branch::positive
+                         ? state.noise - nodes_of_x.first()
+                         : nodes_of_x.count() + state.noise + nodes_of_x.last();
+    e.slide_time[node] += mass;
+    e.slide_distance[node] += mass * v;
+    e.slide_square[node] += mass * v * v;
+  });
+  // A node lives on one rank, so that the sums do not depend on the distribution.
+  for (auto* sums : {&e.slide_time, &e.slide_distance, &e.slide_square}) {
+    linalg::sum_over_ranks(a.states().comm(), *sums);
+  }
+  e.entry = real_parts(a.entry_rates(nu));
+  e.lost_probability = lost;
+  e.stick_time = generator::StaticChain::of(process).occupation(e.entry);
+  return e;
+}
+
+double sum_of_products(const ByLevel& a, const ByLevel& b) {
+  return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
 }
 
 }  // namespace
@@ -66,48 +95,6 @@ double normalise(const KolmogorovOperator& a, Vec nu, double lambda) {
   return total - 1;
 }
 
-namespace {
-
-// Means over excursions of which nu is the occupation, normalised.
-Excursion excursion_of(const KolmogorovOperator& a, Vec nu, double lost) {
-  const auto& [process, noise, velocities] = a.discretisation();
-  const auto nodes = static_cast<std::size_t>(noise->count());
-  const bool symmetry_reduced = a.states().symmetry_reduced();
-  Excursion e;
-  for (auto* sums : {&e.slide_time, &e.slide_distance, &e.slide_square}) {
-    sums->resize((symmetry_reduced ? 1 : 2) * nodes);
-  }
-  const linalg::ReadView local(nu);
-  PetscInt at = 0;
-  a.states().for_each_local([&, &velocities_of_v = *velocities,
-                             &nodes_of_x = *noise](const State& state) {
-    const double mass = PetscRealPart(local[at++]), v = generator::speed_of(state, velocities_of_v);
-    const int node = state.branch == Branch::positive
-                         ? state.noise - nodes_of_x.first()
-                         : nodes_of_x.count() + state.noise + nodes_of_x.last();
-    e.slide_time[node] += mass;
-    e.slide_distance[node] += mass * v;
-    e.slide_square[node] += mass * v * v;
-  });
-  // A node lives on one rank, so that the sums do not depend on the distribution.
-  for (auto* sums : {&e.slide_time, &e.slide_distance, &e.slide_square}) {
-    linalg::sum_over_ranks(a.states().comm(), *sums);
-  }
-  e.entry = real_parts(a.entry_rates(nu));
-  e.lost_probability = lost;
-  e.stick_time = generator::StaticChain::of(process).occupation(e.entry);
-  return e;
-}
-
-// A null vector of L, over a time that is as good as any other.
-void scale_to_unit_time(Vec nu) {
-  PetscScalar time = 0;
-  linalg::check(VecSum(nu, &time));
-  linalg::check(VecScale(nu, 1.0 / time));
-}
-
-}  // namespace
-
 StationaryDistribution::StationaryDistribution(Systems& systems)
     : discretisation_(systems.discretisation()),
       states_(systems.at(0, generator::symmetry_of(systems.process())).a().states()) {
@@ -129,7 +116,8 @@ StationaryDistribution::StationaryDistribution(Systems& systems)
                           linalg::VecHandle& occupation) {
     std::vector<Excursion> each;
     for (const auto& nu : occupations) {
-      if (!rests) scale_to_unit_time(nu.*which);
+      // A null vector of L, over a time that is as good as any other.
+      if (!rests) linalg::scale_to_sum_one(nu.*which);
       const double lost = rests ? normalise(a, nu.*which) : 0;
       each.push_back(excursion_of(a, nu.*which, lost));
     }
@@ -219,14 +207,6 @@ linalg::VecHandle positive_weight(linalg::VecHandle weight) {
   linalg::check(VecShift(weight, 1e-12 * largest));
   return weight;
 }
-
-namespace {
-
-double sum_of_products(const ByLevel& a, const ByLevel& b) {
-  return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
-}
-
-}  // namespace
 
 StickingPhases::StickingPhases(const model::Process& of, std::vector<int> from, bool reduced,
                                double lambda)

@@ -5,12 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <numbers>
 #include <numeric>
 
 #include "stickslip/base/text.hpp"
-#include "stickslip/linalg/dense.hpp"
 
 namespace stickslip::quantities {
 

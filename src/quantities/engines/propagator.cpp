@@ -3,15 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <complex>
 #include <iterator>
 #include <numbers>
-#include <numeric>
-#include <set>
 #include <utility>
 
-#include "stickslip/base/text.hpp"
-#include "stickslip/linalg/vectors.hpp"
 #include "stickslip/quantities/engines/inversion.hpp"
 
 namespace stickslip::quantities {

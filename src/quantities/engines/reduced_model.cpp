@@ -56,7 +56,7 @@ void ProcessPencil::solve(double z, Vec b, Vec x, bool transposed, bool refined)
   if (refined) {
     check(VecCopy(transposed ? factors.solve_transposed(scaled).x : factors.solve(scaled).x, x));
   } else {
-    transposed ? factors.solve_transposed_once(scaled, x) : factors.solve_once(scaled, x);
+    factors.solve_once(scaled, x, transposed);
   }
   by_clock(1, x);
 }
