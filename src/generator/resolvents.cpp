@@ -38,6 +38,127 @@ const char* pc_type_of(const KolmogorovOperator& a) {
   return a.kills_in_one_state() ? "lu" : default_pc_type(a.discretisation());
 }
 
+using Complex = std::complex<double>;
+
+// What a solution keeps of its right-hand side after one step of refinement.
+constexpr double kLargestCorrection = 1e-3;
+
+bool serves_elements(const KolmogorovOperator& a) {
+  const cases::Factors given = given_factors();
+  if (given != cases::Factors::own) return given == cases::Factors::elements;
+  return std::strcmp(default_pc_type(a.discretisation()), linalg::kElementsPc) == 0;
+}
+
+double norm(const ComplexVector& x) {
+  PetscReal real = 0, imaginary = 0;
+  check(VecNorm(x.real, NORM_2, &real));
+  check(VecNorm(x.imaginary, NORM_2, &imaginary));
+  return std::hypot(real, imaginary);
+}
+
+// The factors of a ComplexSolver, of one kind and of the other.
+
+class ByElements {
+ public:
+  ByElements(const KolmogorovOperator& a, const Shift<Complex>& shift)
+      : factors_(a.matrix(), data_of(a.matrix()), shift), vectors_(a.matrix()) {}
+
+  void solve(const ComplexVector& b, const ComplexVector& x, bool transposed) const {
+    const auto real = vectors_.gathered(b.real), imaginary = vectors_.gathered(b.imaginary);
+    linalg::Matrix<Complex> all(static_cast<int>(real.size()), 1);
+    for (std::size_t n = 0; n < real.size(); ++n) {
+      all.data()[n] = {PetscRealPart(real[n]), PetscRealPart(imaginary[n])};
+    }
+    factors_.solve(all, transposed);
+    vectors_.scatter(all.data(), x.real, [](Complex entry) { return entry.real(); });
+    vectors_.scatter(all.data(), x.imaginary, [](Complex entry) { return entry.imag(); });
+  }
+
+ private:
+  ElementElimination<Complex> factors_;
+  linalg::WholeVectors vectors_;
+};
+
+/// The real and then the imaginary parts of each rank.
+class InRealForm {
+ public:
+  InRealForm(const KolmogorovOperator& a, const ComplexVector& diagonal,
+             linalg::SolverStatistics& statistics) {
+    check(MatGetOwnershipRange(a.matrix(), &begin_, &end_));
+    check(MatGetOwnershipRanges(a.matrix(), &ranges_));
+    const PetscInt local = 2 * (end_ - begin_);
+    const auto object = reinterpret_cast<PetscObject>(a.matrix());
+    check(MatCreate(PetscObjectComm(object), matrix_.out()));
+    check(MatSetSizes(matrix_, local, local, PETSC_DETERMINE, PETSC_DETERMINE));
+    check(MatSetType(matrix_, MATAIJ));
+    PetscInt most = 0;
+    for (PetscInt row = begin_; row < end_; ++row) {
+      const linalg::RowView view(a.matrix(), row);
+      PetscInt count = 2;
+      view.for_each([&](PetscInt, PetscScalar) { ++count; });
+      most = std::max(most, count);
+    }
+    check(MatSeqAIJSetPreallocation(matrix_, most, nullptr));
+    check(MatMPIAIJSetPreallocation(matrix_, most, nullptr, most, nullptr));
+    const linalg::ReadView real(diagonal.real), imaginary(diagonal.imaginary);
+    for (PetscInt row = begin_; row < end_; ++row) {
+      const PetscInt n = row - begin_;
+      add_row(a.matrix(), row, {PetscRealPart(real[n]), PetscRealPart(imaginary[n])});
+    }
+    check(MatAssemblyBegin(matrix_, MAT_FINAL_ASSEMBLY));
+    check(MatAssemblyEnd(matrix_, MAT_FINAL_ASSEMBLY));
+    factors_ = std::make_unique<linalg::Factorization>(matrix_, kSlidePrefix, statistics, PCLU);
+  }
+
+  // The transposed real form is that of the transposed matrix for the conjugate of d.
+  void solve(const ComplexVector& b, const ComplexVector& x, bool transposed) const {
+    const double sign = transposed ? -1 : 1;
+    linalg::VecHandle all, solved;
+    check(MatCreateVecs(matrix_, all.out(), solved.out()));
+    {
+      const linalg::ReadView real(b.real), imaginary(b.imaginary);
+      linalg::WriteView to(all);
+      auto* const next = std::copy_n(real.data(), real.size(), to.data());
+      std::transform(imaginary.data(), imaginary.data() + imaginary.size(), next,
+                     [sign](PetscScalar value) { return sign * value; });
+    }
+    factors_->solve_once(all, solved, transposed);
+    const linalg::ReadView from(solved);
+    linalg::WriteView real(x.real), imaginary(x.imaginary);
+    std::copy_n(from.data(), real.size(), real.data());
+    const auto* const next = from.data() + real.size();
+    std::transform(next, next + imaginary.size(), imaginary.data(),
+                   [sign](PetscScalar value) { return sign * value; });
+  }
+
+ private:
+  // Of the real part; the imaginary one follows after all real ones of its rank.
+  [[nodiscard]] PetscInt place(PetscInt index, bool imaginary) const {
+    PetscInt rank = 0;
+    while (ranges_[rank + 1] <= index) ++rank;
+    return ranges_[rank] + index + (imaginary ? ranges_[rank + 1] - ranges_[rank] : 0);
+  }
+
+  void add_row(Mat a, PetscInt row, Complex d) const {
+    const linalg::RowView view(a, row);
+    for (bool imaginary : {false, true}) {
+      const PetscInt at = place(row, imaginary);
+      const auto add = [&](PetscInt column, PetscScalar value) {
+        check(MatSetValue(matrix_, at, column, value, ADD_VALUES));
+      };
+      view.for_each(
+          [&](PetscInt column, PetscScalar value) { add(place(column, imaginary), value); });
+      add(at, d.real());
+      add(place(row, !imaginary), (imaginary ? 1 : -1) * d.imag());
+    }
+  }
+
+  PetscInt begin_ = 0, end_ = 0;
+  const PetscInt* ranges_ = nullptr;
+  linalg::MatHandle matrix_;
+  std::unique_ptr<linalg::Factorization> factors_;
+};
+
 }  // namespace
 
 Factors given_factors() {
@@ -173,131 +294,6 @@ linalg::Analysis Systems::analyse(const SystemKey& key) {
   const auto a = assembled(key);
   return linalg::Factorization::analyse(a.matrix(), kSlidePrefix, statistics_, pc_type_of(a));
 }
-
-namespace {
-
-using Complex = std::complex<double>;
-
-// What a solution keeps of its right-hand side after one step of refinement.
-constexpr double kLargestCorrection = 1e-3;
-
-bool serves_elements(const KolmogorovOperator& a) {
-  const cases::Factors given = given_factors();
-  if (given != cases::Factors::own) return given == cases::Factors::elements;
-  return std::strcmp(default_pc_type(a.discretisation()), linalg::kElementsPc) == 0;
-}
-
-double norm(const ComplexVector& x) {
-  PetscReal real = 0, imaginary = 0;
-  check(VecNorm(x.real, NORM_2, &real));
-  check(VecNorm(x.imaginary, NORM_2, &imaginary));
-  return std::hypot(real, imaginary);
-}
-
-// The factors of a ComplexSolver, of one kind and of the other.
-
-class ByElements {
- public:
-  ByElements(const KolmogorovOperator& a, const Shift<Complex>& shift)
-      : factors_(a.matrix(), data_of(a.matrix()), shift), vectors_(a.matrix()) {}
-
-  void solve(const ComplexVector& b, const ComplexVector& x, bool transposed) const {
-    const auto real = vectors_.gathered(b.real), imaginary = vectors_.gathered(b.imaginary);
-    linalg::Matrix<Complex> all(static_cast<int>(real.size()), 1);
-    for (std::size_t n = 0; n < real.size(); ++n) {
-      all.data()[n] = {PetscRealPart(real[n]), PetscRealPart(imaginary[n])};
-    }
-    factors_.solve(all, transposed);
-    vectors_.scatter(all.data(), x.real, [](Complex entry) { return entry.real(); });
-    vectors_.scatter(all.data(), x.imaginary, [](Complex entry) { return entry.imag(); });
-  }
-
- private:
-  ElementElimination<Complex> factors_;
-  linalg::WholeVectors vectors_;
-};
-
-/// The real and then the imaginary parts of each rank.
-class InRealForm {
- public:
-  InRealForm(const KolmogorovOperator& a, const ComplexVector& diagonal,
-             linalg::SolverStatistics& statistics) {
-    check(MatGetOwnershipRange(a.matrix(), &begin_, &end_));
-    check(MatGetOwnershipRanges(a.matrix(), &ranges_));
-    const PetscInt local = 2 * (end_ - begin_);
-    const auto object = reinterpret_cast<PetscObject>(a.matrix());
-    check(MatCreate(PetscObjectComm(object), matrix_.out()));
-    check(MatSetSizes(matrix_, local, local, PETSC_DETERMINE, PETSC_DETERMINE));
-    check(MatSetType(matrix_, MATAIJ));
-    PetscInt most = 0;
-    for (PetscInt row = begin_; row < end_; ++row) {
-      const linalg::RowView view(a.matrix(), row);
-      PetscInt count = 2;
-      view.for_each([&](PetscInt, PetscScalar) { ++count; });
-      most = std::max(most, count);
-    }
-    check(MatSeqAIJSetPreallocation(matrix_, most, nullptr));
-    check(MatMPIAIJSetPreallocation(matrix_, most, nullptr, most, nullptr));
-    const linalg::ReadView real(diagonal.real), imaginary(diagonal.imaginary);
-    for (PetscInt row = begin_; row < end_; ++row) {
-      const PetscInt n = row - begin_;
-      add_row(a.matrix(), row, {PetscRealPart(real[n]), PetscRealPart(imaginary[n])});
-    }
-    check(MatAssemblyBegin(matrix_, MAT_FINAL_ASSEMBLY));
-    check(MatAssemblyEnd(matrix_, MAT_FINAL_ASSEMBLY));
-    factors_ = std::make_unique<linalg::Factorization>(matrix_, kSlidePrefix, statistics, PCLU);
-  }
-
-  // The transposed real form is that of the transposed matrix for the conjugate of d.
-  void solve(const ComplexVector& b, const ComplexVector& x, bool transposed) const {
-    const double sign = transposed ? -1 : 1;
-    linalg::VecHandle all, solved;
-    check(MatCreateVecs(matrix_, all.out(), solved.out()));
-    {
-      const linalg::ReadView real(b.real), imaginary(b.imaginary);
-      linalg::WriteView to(all);
-      auto* const next = std::copy_n(real.data(), real.size(), to.data());
-      std::transform(imaginary.data(), imaginary.data() + imaginary.size(), next,
-                     [sign](PetscScalar value) { return sign * value; });
-    }
-    factors_->solve_once(all, solved, transposed);
-    const linalg::ReadView from(solved);
-    linalg::WriteView real(x.real), imaginary(x.imaginary);
-    std::copy_n(from.data(), real.size(), real.data());
-    const auto* const next = from.data() + real.size();
-    std::transform(next, next + imaginary.size(), imaginary.data(),
-                   [sign](PetscScalar value) { return sign * value; });
-  }
-
- private:
-  // Of the real part; the imaginary one follows after all real ones of its rank.
-  [[nodiscard]] PetscInt place(PetscInt index, bool imaginary) const {
-    PetscInt rank = 0;
-    while (ranges_[rank + 1] <= index) ++rank;
-    return ranges_[rank] + index + (imaginary ? ranges_[rank + 1] - ranges_[rank] : 0);
-  }
-
-  void add_row(Mat a, PetscInt row, Complex d) const {
-    const linalg::RowView view(a, row);
-    for (bool imaginary : {false, true}) {
-      const PetscInt at = place(row, imaginary);
-      const auto add = [&](PetscInt column, PetscScalar value) {
-        check(MatSetValue(matrix_, at, column, value, ADD_VALUES));
-      };
-      view.for_each(
-          [&](PetscInt column, PetscScalar value) { add(place(column, imaginary), value); });
-      add(at, d.real());
-      add(place(row, !imaginary), (imaginary ? 1 : -1) * d.imag());
-    }
-  }
-
-  PetscInt begin_ = 0, end_ = 0;
-  const PetscInt* ranges_ = nullptr;
-  linalg::MatHandle matrix_;
-  std::unique_ptr<linalg::Factorization> factors_;
-};
-
-}  // namespace
 
 std::complex<double> dot(Vec c, const ComplexVector& x) {
   return {linalg::dot(c, x.real), linalg::dot(c, x.imaginary)};

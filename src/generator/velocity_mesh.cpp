@@ -129,23 +129,6 @@ std::vector<double> split_for_waves(const model::Process& process, double omega,
   return split;
 }
 
-}  // namespace
-
-bool has_unfollowed_waves(const model::Process& process, double omega) {
-  return !damps_fast_waves(process) && omega > highest_followed(process);
-}
-
-bool has_waves(const model::Process& process, double omega) {
-  const auto& noise = process.noise;
-  double slowest = 4 * noise.rate();
-  for (int i = noise.lowest(); noise.table && i <= noise.highest(); ++i) {
-    slowest = std::min(slowest, model::change_rates(noise, i).most);
-  }
-  return omega > slowest;
-}
-
-namespace {
-
 // Of the positive branch, if it is not beyond `most`.
 double upper_tail(const model::Process& process, double tolerance, double most) {
   const double drop = -std::log(tolerance) + 5;  // 5: polynomial factors of the moments
@@ -196,28 +179,6 @@ double weighted_tail(const model::Process& process, double tolerance, double til
   }
   return fallen < drop ? std::max(reach, most) : v;
 }
-
-}  // namespace
-
-double tail_velocity(const model::Process& process, double tolerance, double tilt) {
-  const auto of = [&](const model::Process& branch) {
-    const double tail = upper_tail(branch, tolerance);
-    return tilt > 0 ? std::max(tail, weighted_tail(branch, tolerance, tilt)) : tail;
-  };
-  const double upper = of(process);
-  return process.symmetric() ? upper : std::max(upper, of(process.mirrored()));
-}
-
-double largest_speed(const model::Scene& scene) {
-  constexpr double rounding = 1e-16;
-  const double force = model::largest_force(scene);
-  double speed =
-      std::max(scene.drag.terminal_velocity(force), scene.drag.mirrored().terminal_velocity(force));
-  speed = std::min(speed, tail_velocity(scene.meant(), rounding));
-  return std::min(speed, scene.v_max.value_or(speed));
-}
-
-namespace {
 
 // Local decay rate of log-density in white noise of intensity D, (F(v) - b(v))/D, or of its growth.
 // A mean force g changes it by -g on one velocity branch and by g on the other; elements serve
@@ -365,25 +326,6 @@ Layers partings(const model::Process& process, const MeshRule& rule, bool on_bot
   if (on_both && !process.symmetric()) found.merge(partings(process.mirrored(), rule, false));
   return found;
 }
-
-}  // namespace
-
-// Grading with one ratio down to the finest layer resolves exponentials of every scale alike, so
-// that a large lambda asks for more elements at v = 0 and for none above.
-double smallest_scale(const model::Process& process, double lambda) {
-  const double free = free_layer(process);
-  return lambda > 0 ? std::min(free, killed_layer(process, lambda)) : free;
-}
-
-int natural_layers(const model::Process& process, const MeshRule& rule) {
-  const double span = graded_end(process, rule) / smallest_scale(process, rule.rates.lambda);
-  const double power = std::min(power_at_rest(process), power_at_rest(process.mirrored()));
-  const int more = power < kSmooth ? layers_towards(power, rule) : 0;
-  if (span <= 1) return 1 + more;
-  return 1 + more + static_cast<int>(std::ceil(std::log(span) / -std::log(rule.ratio())));
-}
-
-namespace {
 
 /// decay_rate(). Without weights, beyond the speeds that bodies reach on both velocity branches
 /// that of the branch on which they do, where the next element may end.
@@ -534,26 +476,6 @@ class Halving {
   LogDensity upper_, lower_;
 };
 
-}  // namespace
-
-std::vector<double> element_ends(const model::Process& process, const MeshRule& rule) {
-  Layers breaks = partings(process, rule);
-  for (const auto& kinks : {rule.integrands.breaks, process.drag.breaks}) {
-    for (double v : kinks) breaks.try_emplace(v, kLayersAtBreaks);
-  }
-  // Weights grow on beyond the speeds that bodies reach on one velocity branch alone.
-  const double slower =
-      std::min(process.terminal_velocity(), process.mirrored().terminal_velocity());
-  if (rule.rates.tilt > 0 && slower > 0) breaks.try_emplace(slower, 1);
-  const auto regular = regular_ends(process, rule);
-  constexpr double rounding = 1e-9;
-  std::erase_if(breaks, [&](const auto& b) { return b.first >= (1 - rounding) * regular.back(); });
-  const auto ends = with_breaks(regular, breaks);
-  return Halving(process, rule).halved(graded_towards(breaks, rule.ratio(), ends));
-}
-
-namespace {
-
 // An element at v holds a share of what is asked for that falls like v^0.8 to v (levels that it
 // concerns times how far the solution is from constant there), half a digit from one element to the
 // next, and a degree is worth a digit. One degree for two elements changed no error of seven cases
@@ -608,6 +530,68 @@ std::vector<int> regular_degrees(const model::Process& process, const MeshRule& 
 }
 
 }  // namespace
+
+bool has_unfollowed_waves(const model::Process& process, double omega) {
+  return !damps_fast_waves(process) && omega > highest_followed(process);
+}
+
+bool has_waves(const model::Process& process, double omega) {
+  const auto& noise = process.noise;
+  double slowest = 4 * noise.rate();
+  for (int i = noise.lowest(); noise.table && i <= noise.highest(); ++i) {
+    slowest = std::min(slowest, model::change_rates(noise, i).most);
+  }
+  return omega > slowest;
+}
+
+double tail_velocity(const model::Process& process, double tolerance, double tilt) {
+  const auto of = [&](const model::Process& branch) {
+    const double tail = upper_tail(branch, tolerance);
+    return tilt > 0 ? std::max(tail, weighted_tail(branch, tolerance, tilt)) : tail;
+  };
+  const double upper = of(process);
+  return process.symmetric() ? upper : std::max(upper, of(process.mirrored()));
+}
+
+double largest_speed(const model::Scene& scene) {
+  constexpr double rounding = 1e-16;
+  const double force = model::largest_force(scene);
+  double speed =
+      std::max(scene.drag.terminal_velocity(force), scene.drag.mirrored().terminal_velocity(force));
+  speed = std::min(speed, tail_velocity(scene.meant(), rounding));
+  return std::min(speed, scene.v_max.value_or(speed));
+}
+
+// Grading with one ratio down to the finest layer resolves exponentials of every scale alike, so
+// that a large lambda asks for more elements at v = 0 and for none above.
+double smallest_scale(const model::Process& process, double lambda) {
+  const double free = free_layer(process);
+  return lambda > 0 ? std::min(free, killed_layer(process, lambda)) : free;
+}
+
+int natural_layers(const model::Process& process, const MeshRule& rule) {
+  const double span = graded_end(process, rule) / smallest_scale(process, rule.rates.lambda);
+  const double power = std::min(power_at_rest(process), power_at_rest(process.mirrored()));
+  const int more = power < kSmooth ? layers_towards(power, rule) : 0;
+  if (span <= 1) return 1 + more;
+  return 1 + more + static_cast<int>(std::ceil(std::log(span) / -std::log(rule.ratio())));
+}
+
+std::vector<double> element_ends(const model::Process& process, const MeshRule& rule) {
+  Layers breaks = partings(process, rule);
+  for (const auto& kinks : {rule.integrands.breaks, process.drag.breaks}) {
+    for (double v : kinks) breaks.try_emplace(v, kLayersAtBreaks);
+  }
+  // Weights grow on beyond the speeds that bodies reach on one velocity branch alone.
+  const double slower =
+      std::min(process.terminal_velocity(), process.mirrored().terminal_velocity());
+  if (rule.rates.tilt > 0 && slower > 0) breaks.try_emplace(slower, 1);
+  const auto regular = regular_ends(process, rule);
+  constexpr double rounding = 1e-9;
+  std::erase_if(breaks, [&](const auto& b) { return b.first >= (1 - rounding) * regular.back(); });
+  const auto ends = with_breaks(regular, breaks);
+  return Halving(process, rule).halved(graded_towards(breaks, rule.ratio(), ends));
+}
 
 std::vector<int> element_degrees(const model::Process& process, const MeshRule& rule, int degree) {
   return element_degrees(process, rule, element_ends(process, rule), degree);

@@ -86,42 +86,6 @@ double available_now(MPI_Comm comm) {
   return mine * ranks(comm);
 }
 
-}  // namespace
-
-double left_in_address_space() {
-  rlimit limit{};
-  if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return kUnlimited;
-  return static_cast<double>(limit.rlim_cur) - proc_value("/proc/self/status", "VmSize");
-}
-
-int ranks_on_node() {
-  static const int ranks = [] {
-    MPI_Comm node = MPI_COMM_NULL;
-    MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &node);
-    int count = 1;
-    MPI_Comm_size(node, &count);
-    MPI_Comm_free(&node);
-    return count;
-  }();
-  return ranks;
-}
-
-double available_bytes(MPI_Comm comm, double wanted) {
-  const double found = available_now(comm);
-  // Only in need: pages given back cost time when they are touched again.
-  if (found >= wanted) return found;
-  (void)malloc_trim(0);
-  return available_now(comm);
-}
-
-double peak_resident_bytes() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return 1024.0 * static_cast<double>(usage.ru_maxrss);
-}
-
-namespace {
-
 bool names_threads() {
   return std::getenv("OPENBLAS_NUM_THREADS") != nullptr ||
          std::getenv("OMP_NUM_THREADS") != nullptr;
@@ -136,66 +100,6 @@ bool names_optimised(const std::string& path) {
 
 // OpenBLAS takes 128 MB at a time.
 constexpr double kBlasSpace = 140e6;
-
-}  // namespace
-
-void take_blas_space() {
-  const double left = left_in_address_space();
-  if (left < kBlasSpace) {
-    throw NoMemory(
-        "the limit of the address space (ulimit -v) leaves no memory for linear algebra; "
-        "raise it");
-  }
-  PetscScalar one = 1;
-  PetscBLASInt size = 1, pivot = 0, info = 0;
-  LAPACKgetrf_(&size, &size, &one, &size, &pivot, &info);
-}
-
-Blas loaded_blas() {
-  void* dgemm = dlsym(RTLD_DEFAULT, "dgemm_");
-  Dl_info info{};
-  if (dgemm == nullptr || dladdr(dgemm, &info) == 0 || info.dli_fname == nullptr) {
-    return {"unknown", false};
-  }
-  // Debian's alternatives hide the implementation behind libblas.so.3: follow the link.
-  std::error_code error;
-  const auto resolved = std::filesystem::canonical(info.dli_fname, error);
-  const std::string path = error ? std::string(info.dli_fname) : resolved.string();
-  return {path, !names_optimised(path)};
-}
-
-void restart_with_one_blas_thread(char** arguments) {
-  if (names_threads() || std::isinf(left_in_address_space())) return;
-  setenv("OPENBLAS_NUM_THREADS", "1", 1);
-  execv("/proc/self/exe", arguments);  // where it fails, this process goes on
-}
-
-void keep_blas_to_one_thread() {
-  if (names_threads()) return;
-  using SetThreads = void (*)(int);
-  if (auto set = reinterpret_cast<SetThreads>(dlsym(RTLD_DEFAULT, "openblas_set_num_threads"))) {
-    set(1);
-  }
-}
-
-double measured_speed() {
-  constexpr PetscBLASInt n = 192;
-  constexpr int repetitions = 6;
-  constexpr std::size_t entries = std::size_t{n} * n;
-  const std::vector<PetscScalar> a(entries, 0.5), b(entries, 0.25);
-  std::vector<PetscScalar> c(entries, 0.0);
-  const PetscScalar one = 1, zero = 0;
-  double best = kInfinity;
-  for (int r = 0; r < repetitions; ++r) {
-    const auto start = std::chrono::steady_clock::now();
-    BLASgemm_("N", "N", &n, &n, &n, &one, a.data(), &n, b.data(), &n, &zero, c.data(), &n);
-    const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
-    best = std::min(best, spent.count());
-  }
-  return 2.0 * n * n * n / best;
-}
-
-namespace {
 
 std::string& pending_text() {
   static std::string text;
@@ -221,24 +125,6 @@ PetscErrorCode append_message(MPI_Comm, int line, const char* function, const ch
   return code;
 }
 
-}  // namespace
-
-void check(PetscErrorCode code) {
-  if (code == 0) return;
-  std::string text = std::exchange(pending_text(), {});
-  const auto exception = std::exchange(kept_exception(), nullptr);
-  if (code == kException && exception) std::rethrow_exception(exception);
-  if (text.empty()) text = fmt::format("PETSc error {}", code);
-  throw PetscFailure(code, text);
-}
-
-PetscErrorCode keep_exception() noexcept {
-  kept_exception() = std::current_exception();
-  return kException;
-}
-
-namespace {
-
 constexpr const char* kOutOfMemory =
     "memory ran out; take a larger -delta, a looser -accuracy or more ranks, or raise the limit "
     "(ulimit -v)";
@@ -255,28 +141,6 @@ Failure failure_of(const PetscFailure& failure) {
   default: return {ExitStatus::other, text};
   }
 }
-
-}  // namespace
-
-Failure failure_in_flight() {
-  try {
-    throw;
-  } catch (const Failure& failure) {
-    return failure;
-  } catch (const std::bad_alloc&) {
-    return {ExitStatus::no_memory, kOutOfMemory};
-  } catch (const PetscFailure& failure) {
-    return failure_of(failure);
-  } catch (const std::exception& unforeseen) {
-    return {ExitStatus::other, kPleaseReport + std::string(unforeseen.what())};
-  } catch (...) {  // muParser's are none of these
-    return {ExitStatus::other, kPleaseReport + std::string("an error without words")};
-  }
-}
-
-void collect_error_messages() { check(PetscPushErrorHandler(append_message, nullptr)); }
-
-namespace {
 
 void shorten_start_of_single_process() {
   if (under_mpiexec()) return;
@@ -347,6 +211,126 @@ PetscErrorCode start(int& count, char**& values) {
 }
 
 }  // namespace
+
+double left_in_address_space() {
+  rlimit limit{};
+  if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return kUnlimited;
+  return static_cast<double>(limit.rlim_cur) - proc_value("/proc/self/status", "VmSize");
+}
+
+int ranks_on_node() {
+  static const int ranks = [] {
+    MPI_Comm node = MPI_COMM_NULL;
+    MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &node);
+    int count = 1;
+    MPI_Comm_size(node, &count);
+    MPI_Comm_free(&node);
+    return count;
+  }();
+  return ranks;
+}
+
+double available_bytes(MPI_Comm comm, double wanted) {
+  const double found = available_now(comm);
+  // Only in need: pages given back cost time when they are touched again.
+  if (found >= wanted) return found;
+  (void)malloc_trim(0);
+  return available_now(comm);
+}
+
+double peak_resident_bytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return 1024.0 * static_cast<double>(usage.ru_maxrss);
+}
+
+void take_blas_space() {
+  const double left = left_in_address_space();
+  if (left < kBlasSpace) {
+    throw NoMemory(
+        "the limit of the address space (ulimit -v) leaves no memory for linear algebra; "
+        "raise it");
+  }
+  PetscScalar one = 1;
+  PetscBLASInt size = 1, pivot = 0, info = 0;
+  LAPACKgetrf_(&size, &size, &one, &size, &pivot, &info);
+}
+
+Blas loaded_blas() {
+  void* dgemm = dlsym(RTLD_DEFAULT, "dgemm_");
+  Dl_info info{};
+  if (dgemm == nullptr || dladdr(dgemm, &info) == 0 || info.dli_fname == nullptr) {
+    return {"unknown", false};
+  }
+  // Debian's alternatives hide the implementation behind libblas.so.3: follow the link.
+  std::error_code error;
+  const auto resolved = std::filesystem::canonical(info.dli_fname, error);
+  const std::string path = error ? std::string(info.dli_fname) : resolved.string();
+  return {path, !names_optimised(path)};
+}
+
+void restart_with_one_blas_thread(char** arguments) {
+  if (names_threads() || std::isinf(left_in_address_space())) return;
+  setenv("OPENBLAS_NUM_THREADS", "1", 1);
+  execv("/proc/self/exe", arguments);  // where it fails, this process goes on
+}
+
+void keep_blas_to_one_thread() {
+  if (names_threads()) return;
+  using SetThreads = void (*)(int);
+  if (auto set = reinterpret_cast<SetThreads>(dlsym(RTLD_DEFAULT, "openblas_set_num_threads"))) {
+    set(1);
+  }
+}
+
+double measured_speed() {
+  constexpr PetscBLASInt n = 192;
+  constexpr int repetitions = 6;
+  constexpr std::size_t entries = std::size_t{n} * n;
+  const std::vector<PetscScalar> a(entries, 0.5), b(entries, 0.25);
+  std::vector<PetscScalar> c(entries, 0.0);
+  const PetscScalar one = 1, zero = 0;
+  double best = kInfinity;
+  for (int r = 0; r < repetitions; ++r) {
+    const auto start = std::chrono::steady_clock::now();
+    BLASgemm_("N", "N", &n, &n, &n, &one, a.data(), &n, b.data(), &n, &zero, c.data(), &n);
+    const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
+    best = std::min(best, spent.count());
+  }
+  return 2.0 * n * n * n / best;
+}
+
+void check(PetscErrorCode code) {
+  if (code == 0) return;
+  std::string text = std::exchange(pending_text(), {});
+  const auto exception = std::exchange(kept_exception(), nullptr);
+  if (code == kException && exception) std::rethrow_exception(exception);
+  if (text.empty()) text = fmt::format("PETSc error {}", code);
+  throw PetscFailure(code, text);
+}
+
+PetscErrorCode keep_exception() noexcept {
+  kept_exception() = std::current_exception();
+  return kException;
+}
+
+Failure failure_in_flight() {
+  try {
+    throw;
+  } catch (const Failure& failure) {
+    return failure;
+  } catch (const std::bad_alloc&) {
+    return {ExitStatus::no_memory, kOutOfMemory};
+  } catch (const PetscFailure& failure) {
+    return failure_of(failure);
+  } catch (const std::exception& unforeseen) {
+    return {ExitStatus::other, kPleaseReport + std::string(unforeseen.what())};
+  } catch (...) {  // muParser's are none of these
+    return {ExitStatus::other, kPleaseReport + std::string("an error without words")};
+  }
+}
+
+void collect_error_messages() { check(PetscPushErrorHandler(append_message, nullptr)); }
 
 Session::Session(int& argc, char**& argv) : arguments_(argv, argv + argc) {
   shorten_start_of_single_process();

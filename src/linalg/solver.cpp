@@ -69,34 +69,6 @@ VecHandle absolute(Vec x) {
   return size;
 }
 
-}  // namespace
-
-double BackwardError::forward(Vec residual, Vec b, Vec x) {
-  if (magnitude_ == nullptr) magnitude_ = magnitudes(matrix_);
-  const VecHandle size = absolute(x), bound = absolute(b);
-  PetscReal largest = 0, error = 0;
-  check(VecNorm(x, NORM_INFINITY, &largest));
-  check(VecShift(size, kNegligible * largest));
-  check(MatMultAdd(magnitude_, size, bound, bound));
-  check(VecPointwiseDivide(residual, residual, bound));  // 0/0 counts as 0 in PETSc
-  check(VecNorm(residual, NORM_INFINITY, &error));
-  return error;
-}
-
-// The sum of |A|^T |x| takes the sums of the rows of |A| alone.
-double BackwardError::transposed(Vec residual, Vec b, Vec x) {
-  if (magnitude_sums_ == nullptr) magnitude_sums_ = magnitude_sums(matrix_);
-  const VecHandle size = absolute(x);
-  PetscScalar visits = 0;
-  PetscReal error = 0, b_size = 0;
-  check(VecTDot(magnitude_sums_, size, &visits));
-  check(VecNorm(b, NORM_1, &b_size));
-  check(VecNorm(residual, NORM_1, &error));
-  return error == 0 ? 0 : error / (PetscRealPart(visits) + b_size);
-}
-
-namespace {
-
 PetscLogStage stage_named(const char* name) {
   PetscLogStage stage = -1;
   check(PetscLogStageGetId(name, &stage));
@@ -110,54 +82,6 @@ double logged_seconds(PetscLogEvent event) {
   check(PetscLogEventGetPerfInfo(PETSC_DETERMINE, event, &info));
   return info.time;
 }
-
-}  // namespace
-
-double wall_seconds() {
-  PetscLogDouble seconds = 0;
-  check(PetscTime(&seconds));
-  return seconds;
-}
-
-SolverStatistics& SolverStatistics::operator+=(const SolverStatistics& other) {
-  assemblies += other.assemblies;
-  factorizations_real += other.factorizations_real;
-  factorizations_complex += other.factorizations_complex;
-  solves += other.solves;
-  corrections += other.corrections;
-  iterations += other.iterations;
-  unknowns = std::max(unknowns, other.unknowns);
-  nonzeros = std::max(nonzeros, other.nonzeros);
-  factor_entries = std::max(factor_entries, other.factor_entries);
-  factor_megabytes = std::max(factor_megabytes, other.factor_megabytes);
-  backward_error = std::max(backward_error, other.backward_error);
-  assembly_seconds += other.assembly_seconds;
-  analysis_seconds += other.analysis_seconds;
-  factorization_seconds += other.factorization_seconds;
-  solve_seconds += other.solve_seconds;
-  return *this;
-}
-
-PhaseTimer::PhaseTimer(const char* stage, double& seconds)
-    : seconds_(seconds), start_(wall_seconds()) {
-  check(PetscLogStagePush(stage_named(stage)));
-}
-
-PhaseTimer::~PhaseTimer() {
-  PetscLogDouble end = start_;
-  (void)PetscTime(&end);
-  seconds_ += end - start_;
-  (void)PetscLogStagePop();
-}
-
-EventTimer::EventTimer(const char* event) {
-  check(PetscLogEventGetId(event, &event_));
-  before_ = logged_seconds(event_);
-}
-
-double EventTimer::seconds() const { return logged_seconds(event_) - before_; }
-
-namespace {
 
 PC preconditioner_of(KSP ksp) {
   PC pc = nullptr;
@@ -273,7 +197,109 @@ bool solve_together(KSP ksp, std::span<const Vec> b, std::span<const Vec> x, boo
   return true;
 }
 
+constexpr double kBackwardErrorLimit = 1e-12;
+constexpr int kMostRefinementSteps = 2;  // the second only where the first leaves too much
+constexpr std::size_t kTogether = 32;    // right-hand sides, in memory at once
+
+MatHandle small_matrix() {
+  MatHandle unit;
+  check(MatCreate(PETSC_COMM_SELF, unit.out()));
+  check(MatSetSizes(unit, 2, 2, 2, 2));
+  check(MatSetType(unit, MATAIJ));
+  check(MatSetUp(unit));
+  for (PetscInt i = 0; i < 2; ++i) check(MatSetValue(unit, i, i, 1, INSERT_VALUES));
+  check(MatAssemblyBegin(unit, MAT_FINAL_ASSEMBLY));
+  check(MatAssemblyEnd(unit, MAT_FINAL_ASSEMBLY));
+  return unit;
+}
+
+// What a solver of that type reads.
+void read_all_options(Mat matrix, const std::string& prefix, PCType pc_type) {
+  const KspHandle ksp = linear_solver(matrix, prefix, pc_type);
+  const auto amf = default_ordering(prefix);
+  if (!is_own(ksp)) check(KSPSetUp(ksp));
+}
+
+std::string help_of_petsc;
+
+PetscErrorCode collect_help(FILE* /*file*/, const char format[], va_list values) {
+  constexpr std::size_t most = 1 << 16;
+  std::string text(most, '\0');
+  std::size_t size = 0;
+  const PetscErrorCode code = PetscVSNPrintf(text.data(), most, format, &size, values);
+  if (code == 0) help_of_petsc.append(text, 0, text.find('\0'));
+  return code;
+}
+
 }  // namespace
+
+double BackwardError::forward(Vec residual, Vec b, Vec x) {
+  if (magnitude_ == nullptr) magnitude_ = magnitudes(matrix_);
+  const VecHandle size = absolute(x), bound = absolute(b);
+  PetscReal largest = 0, error = 0;
+  check(VecNorm(x, NORM_INFINITY, &largest));
+  check(VecShift(size, kNegligible * largest));
+  check(MatMultAdd(magnitude_, size, bound, bound));
+  check(VecPointwiseDivide(residual, residual, bound));  // 0/0 counts as 0 in PETSc
+  check(VecNorm(residual, NORM_INFINITY, &error));
+  return error;
+}
+
+// The sum of |A|^T |x| takes the sums of the rows of |A| alone.
+double BackwardError::transposed(Vec residual, Vec b, Vec x) {
+  if (magnitude_sums_ == nullptr) magnitude_sums_ = magnitude_sums(matrix_);
+  const VecHandle size = absolute(x);
+  PetscScalar visits = 0;
+  PetscReal error = 0, b_size = 0;
+  check(VecTDot(magnitude_sums_, size, &visits));
+  check(VecNorm(b, NORM_1, &b_size));
+  check(VecNorm(residual, NORM_1, &error));
+  return error == 0 ? 0 : error / (PetscRealPart(visits) + b_size);
+}
+
+double wall_seconds() {
+  PetscLogDouble seconds = 0;
+  check(PetscTime(&seconds));
+  return seconds;
+}
+
+SolverStatistics& SolverStatistics::operator+=(const SolverStatistics& other) {
+  assemblies += other.assemblies;
+  factorizations_real += other.factorizations_real;
+  factorizations_complex += other.factorizations_complex;
+  solves += other.solves;
+  corrections += other.corrections;
+  iterations += other.iterations;
+  unknowns = std::max(unknowns, other.unknowns);
+  nonzeros = std::max(nonzeros, other.nonzeros);
+  factor_entries = std::max(factor_entries, other.factor_entries);
+  factor_megabytes = std::max(factor_megabytes, other.factor_megabytes);
+  backward_error = std::max(backward_error, other.backward_error);
+  assembly_seconds += other.assembly_seconds;
+  analysis_seconds += other.analysis_seconds;
+  factorization_seconds += other.factorization_seconds;
+  solve_seconds += other.solve_seconds;
+  return *this;
+}
+
+PhaseTimer::PhaseTimer(const char* stage, double& seconds)
+    : seconds_(seconds), start_(wall_seconds()) {
+  check(PetscLogStagePush(stage_named(stage)));
+}
+
+PhaseTimer::~PhaseTimer() {
+  PetscLogDouble end = start_;
+  (void)PetscTime(&end);
+  seconds_ += end - start_;
+  (void)PetscLogStagePop();
+}
+
+EventTimer::EventTimer(const char* event) {
+  check(PetscLogEventGetId(event, &event_));
+  before_ = logged_seconds(event_);
+}
+
+double EventTimer::seconds() const { return logged_seconds(event_) - before_; }
 
 std::string implied_pc_type(const std::string& prefix) {
   const std::string pc = prefix + "pc_", own = pc + kElementsPc, mat = prefix + "mat_";
@@ -329,14 +355,6 @@ void record_factors(KSP ksp, SolverStatistics& statistics) {
   seen.factor_megabytes = sizes.megabytes;
   statistics += seen;
 }
-
-namespace {
-
-constexpr double kBackwardErrorLimit = 1e-12;
-constexpr int kMostRefinementSteps = 2;  // the second only where the first leaves too much
-constexpr std::size_t kTogether = 32;    // right-hand sides, in memory at once
-
-}  // namespace
 
 Factorization::Factorization(Mat matrix, const std::string& prefix, SolverStatistics& statistics,
                              PCType pc_type)
@@ -477,40 +495,6 @@ Analysis Factorization::analyse(Mat matrix, const std::string& prefix, SolverSta
   constexpr PetscInt entries = 3, megabytes = 17;
   return counted_by_mumps(ksp, entries, megabytes);
 }
-
-namespace {
-
-MatHandle small_matrix() {
-  MatHandle unit;
-  check(MatCreate(PETSC_COMM_SELF, unit.out()));
-  check(MatSetSizes(unit, 2, 2, 2, 2));
-  check(MatSetType(unit, MATAIJ));
-  check(MatSetUp(unit));
-  for (PetscInt i = 0; i < 2; ++i) check(MatSetValue(unit, i, i, 1, INSERT_VALUES));
-  check(MatAssemblyBegin(unit, MAT_FINAL_ASSEMBLY));
-  check(MatAssemblyEnd(unit, MAT_FINAL_ASSEMBLY));
-  return unit;
-}
-
-// What a solver of that type reads.
-void read_all_options(Mat matrix, const std::string& prefix, PCType pc_type) {
-  const KspHandle ksp = linear_solver(matrix, prefix, pc_type);
-  const auto amf = default_ordering(prefix);
-  if (!is_own(ksp)) check(KSPSetUp(ksp));
-}
-
-std::string help_of_petsc;
-
-PetscErrorCode collect_help(FILE* /*file*/, const char format[], va_list values) {
-  constexpr std::size_t most = 1 << 16;
-  std::string text(most, '\0');
-  std::size_t size = 0;
-  const PetscErrorCode code = PetscVSNPrintf(text.data(), most, format, &size, values);
-  if (code == 0) help_of_petsc.append(text, 0, text.find('\0'));
-  return code;
-}
-
-}  // namespace
 
 void probe_linear_solver(const std::string& prefix) {
   read_all_options(small_matrix(), prefix, PCLU);

@@ -137,27 +137,6 @@ void passages_of(Tally& tally, const std::vector<double>& speeds, const Follow& 
   });
 }
 
-}  // namespace
-
-void peak_tally(Tally& tally) {
-  auto speeds = tally.question().velocity;
-  std::sort(speeds.begin(), speeds.end());
-  tally.wanted().speeds = speeds;
-  std::vector<Tally::Range> above;
-  for (double w : tally.question().velocity) above.push_back({w, kInfinity});
-  tally.report([of = tally.shares(above, &Excursion::peak)](const Tally& t) -> Estimates {
-    return {array(cases::kPPeak, t.question().velocity, of)};
-  });
-  if (tally.sampled() == Sampled::cycles) {
-    passages_of(tally, speeds, [](std::size_t n) { return CyclesUntil(n); });
-  } else {
-    passages_of(tally, speeds,
-                [](std::size_t n) { return [n](const Excursion& e) { return passage(e, n); }; });
-  }
-}
-
-namespace {
-
 struct PassedPath {
   double weight, time, square;
 };
@@ -215,6 +194,23 @@ void report_by_speed(Tally& tally, const cases::Row& row, const std::vector<doub
 }
 
 }  // namespace
+
+void peak_tally(Tally& tally) {
+  auto speeds = tally.question().velocity;
+  std::sort(speeds.begin(), speeds.end());
+  tally.wanted().speeds = speeds;
+  std::vector<Tally::Range> above;
+  for (double w : tally.question().velocity) above.push_back({w, kInfinity});
+  tally.report([of = tally.shares(above, &Excursion::peak)](const Tally& t) -> Estimates {
+    return {array(cases::kPPeak, t.question().velocity, of)};
+  });
+  if (tally.sampled() == Sampled::cycles) {
+    passages_of(tally, speeds, [](std::size_t n) { return CyclesUntil(n); });
+  } else {
+    passages_of(tally, speeds,
+                [](std::size_t n) { return [n](const Excursion& e) { return passage(e, n); }; });
+  }
+}
 
 void first_passage_tally(Tally& tally) {
   const auto passed = sums_by_speed(tally, [](double weight, double time) {

@@ -32,24 +32,17 @@ constexpr double kSlowest = 1e-2;
 constexpr double kNearZero = 1e-10;         // of 1/tau
 constexpr double kNearZeroOfMemory = 1e-6;  // of the rate at which the velocity forgets itself
 
-/// S_v of a reduced model.
-class ReducedFunction {
- public:
-  ReducedFunction(const Reduced& r, double turn)
-      : turn_(turn),
-        near_(r.m, r.gamma, r.beta),
-        far_(near_.between(r.gamma * r.m * r.m, r.m * r.beta)) {}
+using Density = std::function<double(double)>;
 
-  [[nodiscard]] double operator()(double omega) const {
+// S_v of a reduced model; from `turn` the formulas for large omega take over.
+Density density_of(const Reduced& r, double turn) {
+  const TransferFunction near(r.m, r.gamma, r.beta);
+  return [turn, near, far = near.between(r.gamma * r.m * r.m, r.m * r.beta)](double omega) {
     const std::complex<double> z(0, omega);
-    if (omega <= turn_) return 2 * near_(z).real();
-    return -2 * far_(z).imag() / (omega * omega * omega);
-  }
-
- private:
-  double turn_;  // where the formulas for large omega take over
-  TransferFunction near_, far_;
-};
+    if (omega <= turn) return 2 * near(z).real();
+    return -2 * far(z).imag() / (omega * omega * omega);
+  };
+}
 
 // first, first ratio, first ratio^2, ... below last.
 std::vector<double> geometric(double first, double last, double ratio) {
@@ -74,8 +67,6 @@ std::vector<double> judged(const std::vector<double>& omega, double slow, double
   all.erase(std::unique(all.begin(), all.end()), all.end());
   return all;
 }
-
-using Density = std::function<double(double)>;
 
 // First omega at which S falls to half of S(0); NaN if there is none, as where a coarse grid makes
 // S(0) negative.
@@ -133,101 +124,6 @@ double correlation_time(ProcessPencil& pencil, Vec b, Vec c) {
   }
   return time;
 }
-
-}  // namespace
-
-SpectrumShape shape_of(const Density& s, double tau, double bulk_error, double error) {
-  return {full_width(s, tau, bulk_error), integral(s, tau, error)};
-}
-
-ReducedSpectrum reduced_spectrum(generator::Systems& systems,
-                                 const StationaryDistribution& distribution,
-                                 const std::vector<double>& omega,
-                                 const ModelTolerance& tolerance) {
-  const auto& noise = systems.process().noise;
-  const double turn = 1 / noise.correlation_time();
-  ProcessPencil pencil(systems, distribution.velocity_symmetry(), StaticPhase::kept);
-  const auto [b, c] = distribution.velocity(pencil.a());
-  const linalg::VecHandle d = distribution.weight_on(pencil.a());
-  ReducedModel model(pencil, {b, c, d}, ReducedModel::Nature::smooth, kMostPairs);
-  const double memory = correlation_time(pencil, b, c);
-  const double least = distribution.process().symmetric() ? 0 : kNearZeroOfMemory / memory;
-  const std::vector<double> frequencies =
-      judged(omega, std::min(turn, 1 / memory), std::max(turn, 1 / memory));
-  Questions questions;
-  questions.values = [&](const Reduced& reduced) {
-    const ReducedFunction s(reduced, turn);
-    std::vector<Uncertain> values;
-    for (double w : frequencies) values.push_back({s(w), 0});
-    return values;
-  };
-  // Beyond all rates S_v and, as moments at infinity agree, its error fall as omega^-4. There the
-  // real part of c A (z + A)^-1 A b, which S_v is made of, falls below the rounding of the
-  // imaginary one: models are compared where that does not count yet.
-  const double end = 1e3 * std::max(turn, 1 / memory);
-  for (std::size_t n = 0; n < frequencies.size(); ++n) {
-    const double w = std::min(frequencies[n], end);
-    questions.points.emplace_back(0, std::max(w, least));
-    questions.terms.push_back(
-        {{n, frequencies[n] > end ? 2 * std::pow(end / frequencies[n], 4) : 2}});
-  }
-  questions.each_by_its_size = true;
-  questions.tolerance = tolerance.value;
-  questions.first = {{kSlowest / memory, 1}, {5 * turn, 8}};
-  questions.lowest = kSlowest / memory;
-  questions.far = turn;
-  const Answers answers = ask(model, questions, tolerance.recipe("spectrum"));
-
-  const auto at = [&](double w) -> Uncertain {
-    const auto n = static_cast<std::size_t>(
-        std::lower_bound(frequencies.begin(), frequencies.end(), w) - frequencies.begin());
-    return {answers.value[n], answers.error[n]};
-  };
-  ReducedSpectrum result;
-  for (double w : omega) result.spectrum.value.push_back(at(w));
-  result.spectrum.at_zero = at(0);
-  const ReducedFunction s(answers.model, turn);
-  // What lies far out in the tail does not matter to the width.
-  double bulk_error = 0;
-  for (std::size_t n = 0; n < frequencies.size(); ++n) {
-    if (frequencies[n] > 10 * std::max(turn, 1 / memory)) continue;
-    bulk_error = std::max(bulk_error, answers.error[n] / std::abs(answers.value[n]));
-  }
-  result.shape = shape_of(s, noise.correlation_time(), bulk_error, answers.relative_error);
-  // What the integral leaves of c v = E[V^2], known to rounding here, the model has not seen.
-  auto& integrated = result.shape.variance;
-  integrated.error = std::max(integrated.error, std::abs(integrated.value - linalg::dot(c, b)));
-  result.pairs = answers.pairs;
-  result.shifts = answers.shifts;
-  return result;
-}
-
-std::vector<Uncertain> direct_spectrum(generator::Systems& systems,
-                                       const StationaryDistribution& distribution,
-                                       const std::vector<double>& omega) {
-  const auto a = generator::assemble(systems.comm(), systems.discretisation(), 0,
-                                     distribution.velocity_symmetry(), StaticPhase::kept,
-                                     systems.statistics());
-  const double turn = 1 / systems.process().noise.correlation_time(),
-               least = distribution.process().symmetric() ? 0 : kNearZero * turn;
-  const auto [b, c] = distribution.velocity(a);
-  const linalg::VecHandle ab = a.zeros(), ca = a.zeros();
-  check(MatMult(a.matrix(), b, ab));
-  check(MatMultTranspose(a.matrix(), c, ca));
-  std::vector<Uncertain> values;
-  for (double w : omega) {
-    generator::ComplexSolver solver(a, std::complex(0.0, std::max(w, least)), systems.statistics());
-    const bool far = w > turn;
-    const auto solution = solver.solve({linalg::copy_of(far ? ab : b), a.zeros()}, false);
-    const Vec seen = far ? ca : c;
-    const double factor = far ? -2 / (w * w) : 2;
-    values.push_back({factor * linalg::dot(seen, solution.x.real),
-                      std::abs(factor * linalg::dot(seen, solution.correction.real))});
-  }
-  return values;
-}
-
-namespace {
 
 // Puts values at the frequencies of waves, each found on elements of its own, between the others.
 void put_waves(const Computation& computation, Spectrum& spectrum) {
@@ -288,44 +184,6 @@ void find_spectrum(Computation& computation, bool direct) {
   computation.report("krylov_shifts", static_cast<double>(reduced.shifts.size()),
                      "real shifts of the rational Krylov spaces of the spectrum");
 }
-
-}  // namespace
-
-void spectrum_tasks(Planner& planner) {
-  planner.need_distribution();
-  // What vanishes at 0 has no width there, which a reduced model would look for.
-  const bool direct = planner.given().method.spectrum_solver == cases::SpectrumSolver::direct ||
-                      planner.given().scene.spring;
-  planner.needs().omega = planner.question().omega;
-  // 0 as well, and the stationary distribution alone.
-  const int frequencies = static_cast<int>(planner.question().omega.size()) + 2;
-  planner.add_adaptive("spectrum", direct ? frequencies : 2, direct ? frequencies : 18,
-                       [=](Computation& computation) { find_spectrum(computation, direct); });
-}
-
-// The chain is solved for directly, as it is meant: what is truncated of it differs between
-// refinement levels. Levels beyond 40 deviations are below all rounding.
-void noise_spectrum_tasks(Planner& planner) {
-  const auto& scene = planner.given().scene;
-  const auto target = scene.noise.target;
-  auto chain = scene.meant().noise;
-  const double far = 40 * chain.standard_deviation() / chain.step();
-  chain.levels = static_cast<int>(std::min<double>(chain.levels, std::ceil(far)));
-  planner.add({"noise spectrum", {}, [target, chain](Computation& computation) {
-                 auto found = array(cases::kSX, computation.question().omega),
-                      meant = array(cases::kSXTarget, computation.question().omega);
-                 for (double omega : computation.question().omega) {
-                   found.value.push_back(model::power_spectral_density(chain, omega));
-                   if (target) meant.value.push_back(target(omega));
-                 }
-                 found.error.assign(found.value.size(), 0.0);
-                 meant.error.assign(meant.value.size(), 0.0);
-                 computation.results().push_back(std::move(found));
-                 if (target) computation.results().push_back(std::move(meant));
-               }});
-}
-
-namespace {
 
 using Function = generator::KolmogorovOperator::Observable;
 
@@ -503,6 +361,131 @@ Resolvent by_start(generator::Systems& systems, double lambda,
 }
 
 }  // namespace
+
+SpectrumShape shape_of(const Density& s, double tau, double bulk_error, double error) {
+  return {full_width(s, tau, bulk_error), integral(s, tau, error)};
+}
+
+ReducedSpectrum reduced_spectrum(generator::Systems& systems,
+                                 const StationaryDistribution& distribution,
+                                 const std::vector<double>& omega,
+                                 const ModelTolerance& tolerance) {
+  const auto& noise = systems.process().noise;
+  const double turn = 1 / noise.correlation_time();
+  ProcessPencil pencil(systems, distribution.velocity_symmetry(), StaticPhase::kept);
+  const auto [b, c] = distribution.velocity(pencil.a());
+  const linalg::VecHandle d = distribution.weight_on(pencil.a());
+  ReducedModel model(pencil, {b, c, d}, ReducedModel::Nature::smooth, kMostPairs);
+  const double memory = correlation_time(pencil, b, c);
+  const double least = distribution.process().symmetric() ? 0 : kNearZeroOfMemory / memory;
+  const std::vector<double> frequencies =
+      judged(omega, std::min(turn, 1 / memory), std::max(turn, 1 / memory));
+  Questions questions;
+  questions.values = [&](const Reduced& reduced) {
+    const Density s = density_of(reduced, turn);
+    std::vector<Uncertain> values;
+    for (double w : frequencies) values.push_back({s(w), 0});
+    return values;
+  };
+  // Beyond all rates S_v and, as moments at infinity agree, its error fall as omega^-4. There the
+  // real part of c A (z + A)^-1 A b, which S_v is made of, falls below the rounding of the
+  // imaginary one: models are compared where that does not count yet.
+  const double end = 1e3 * std::max(turn, 1 / memory);
+  for (std::size_t n = 0; n < frequencies.size(); ++n) {
+    const double w = std::min(frequencies[n], end);
+    questions.points.emplace_back(0, std::max(w, least));
+    questions.terms.push_back(
+        {{n, frequencies[n] > end ? 2 * std::pow(end / frequencies[n], 4) : 2}});
+  }
+  questions.each_by_its_size = true;
+  questions.tolerance = tolerance.value;
+  questions.first = {{kSlowest / memory, 1}, {5 * turn, 8}};
+  questions.lowest = kSlowest / memory;
+  questions.far = turn;
+  const Answers answers = ask(model, questions, tolerance.recipe("spectrum"));
+
+  const auto at = [&](double w) -> Uncertain {
+    const auto n = static_cast<std::size_t>(
+        std::lower_bound(frequencies.begin(), frequencies.end(), w) - frequencies.begin());
+    return {answers.value[n], answers.error[n]};
+  };
+  ReducedSpectrum result;
+  for (double w : omega) result.spectrum.value.push_back(at(w));
+  result.spectrum.at_zero = at(0);
+  const Density s = density_of(answers.model, turn);
+  // What lies far out in the tail does not matter to the width.
+  double bulk_error = 0;
+  for (std::size_t n = 0; n < frequencies.size(); ++n) {
+    if (frequencies[n] > 10 * std::max(turn, 1 / memory)) continue;
+    bulk_error = std::max(bulk_error, answers.error[n] / std::abs(answers.value[n]));
+  }
+  result.shape = shape_of(s, noise.correlation_time(), bulk_error, answers.relative_error);
+  // What the integral leaves of c v = E[V^2], known to rounding here, the model has not seen.
+  auto& integrated = result.shape.variance;
+  integrated.error = std::max(integrated.error, std::abs(integrated.value - linalg::dot(c, b)));
+  result.pairs = answers.pairs;
+  result.shifts = answers.shifts;
+  return result;
+}
+
+std::vector<Uncertain> direct_spectrum(generator::Systems& systems,
+                                       const StationaryDistribution& distribution,
+                                       const std::vector<double>& omega) {
+  const auto a = generator::assemble(systems.comm(), systems.discretisation(), 0,
+                                     distribution.velocity_symmetry(), StaticPhase::kept,
+                                     systems.statistics());
+  const double turn = 1 / systems.process().noise.correlation_time(),
+               least = distribution.process().symmetric() ? 0 : kNearZero * turn;
+  const auto [b, c] = distribution.velocity(a);
+  const linalg::VecHandle ab = a.zeros(), ca = a.zeros();
+  check(MatMult(a.matrix(), b, ab));
+  check(MatMultTranspose(a.matrix(), c, ca));
+  std::vector<Uncertain> values;
+  for (double w : omega) {
+    generator::ComplexSolver solver(a, std::complex(0.0, std::max(w, least)), systems.statistics());
+    const bool far = w > turn;
+    const auto solution = solver.solve({linalg::copy_of(far ? ab : b), a.zeros()}, false);
+    const Vec seen = far ? ca : c;
+    const double factor = far ? -2 / (w * w) : 2;
+    values.push_back({factor * linalg::dot(seen, solution.x.real),
+                      std::abs(factor * linalg::dot(seen, solution.correction.real))});
+  }
+  return values;
+}
+
+void spectrum_tasks(Planner& planner) {
+  planner.need_distribution();
+  // What vanishes at 0 has no width there, which a reduced model would look for.
+  const bool direct = planner.given().method.spectrum_solver == cases::SpectrumSolver::direct ||
+                      planner.given().scene.spring;
+  planner.needs().omega = planner.question().omega;
+  // 0 as well, and the stationary distribution alone.
+  const int frequencies = static_cast<int>(planner.question().omega.size()) + 2;
+  planner.add_adaptive("spectrum", direct ? frequencies : 2, direct ? frequencies : 18,
+                       [=](Computation& computation) { find_spectrum(computation, direct); });
+}
+
+// The chain is solved for directly, as it is meant: what is truncated of it differs between
+// refinement levels. Levels beyond 40 deviations are below all rounding.
+void noise_spectrum_tasks(Planner& planner) {
+  const auto& scene = planner.given().scene;
+  const auto target = scene.noise.target;
+  auto chain = scene.meant().noise;
+  const double far = 40 * chain.standard_deviation() / chain.step();
+  chain.levels = static_cast<int>(std::min<double>(chain.levels, std::ceil(far)));
+  planner.add({"noise spectrum", {}, [target, chain](Computation& computation) {
+                 auto found = array(cases::kSX, computation.question().omega),
+                      meant = array(cases::kSXTarget, computation.question().omega);
+                 for (double omega : computation.question().omega) {
+                   found.value.push_back(model::power_spectral_density(chain, omega));
+                   if (target) meant.value.push_back(target(omega));
+                 }
+                 found.error.assign(found.value.size(), 0.0);
+                 meant.error.assign(meant.value.size(), 0.0);
+                 computation.results().push_back(std::move(found));
+                 if (target) computation.results().push_back(std::move(meant));
+               }});
+}
 
 Resolvent resolvent(generator::Systems& systems, double lambda,
                     const std::vector<model::Observable>& observables) {

@@ -97,36 +97,6 @@ Estimate at_frequency(const Sums<Wave>& m) {
   return m.estimate(sum / m.overall(&Wave::time));
 }
 
-}  // namespace
-
-void spectrum_tally(Tally& tally) {
-  const auto& omega = tally.wanted().omega = tally.question().omega;
-  tally.wanted().integrals = true;
-  const auto moves = tally.sums_of_renewals([](const Excursion& e) -> Moves {
-    const double d = e.drift, t = e.slide + e.stick, turned = e.turned ? 1 : 0;
-    return {d, t, d * d, d * t, t * t, turned * d, turned * t};
-  });
-  std::vector<Sums<Wave>> waves;
-  for (std::size_t n = 0; n < omega.size(); ++n) {
-    waves.push_back(tally.sums_of_renewals([n, w = omega[n]](const Excursion& e) -> Wave {
-      const double t = e.slide + e.stick, turned = e.turned ? 1 : 0, kept = 1 - turned;
-      const auto c = e.transform[n], turn = std::polar(1.0, -w * t), both = std::conj(c) * turn;
-      return {std::norm(c), c, kept * turn, turned * turn, kept * both, turned * both, t};
-    }));
-  }
-  tally.report([=](const Tally&) {
-    const Estimate s = at_zero(moves);
-    Estimates all;
-    const auto of_wave = [&](std::size_t n) { return omega[n] == 0 ? s : at_frequency(waves[n]); };
-    if (!omega.empty()) all.push_back(array(cases::kSV, omega, of_wave));
-    all.push_back({&cases::kS0, {s}});
-    all.push_back({&cases::kDiffusivity, {s / 2}});
-    return all;
-  });
-}
-
-namespace {
-
 double discounted_time(double lambda, double time) {
   return lambda > 0 ? -std::expm1(-lambda * time) / lambda : time;
 }
@@ -301,6 +271,32 @@ void from_cycles(Tally& tally, std::size_t number) {
 }
 
 }  // namespace
+
+void spectrum_tally(Tally& tally) {
+  const auto& omega = tally.wanted().omega = tally.question().omega;
+  tally.wanted().integrals = true;
+  const auto moves = tally.sums_of_renewals([](const Excursion& e) -> Moves {
+    const double d = e.drift, t = e.slide + e.stick, turned = e.turned ? 1 : 0;
+    return {d, t, d * d, d * t, t * t, turned * d, turned * t};
+  });
+  std::vector<Sums<Wave>> waves;
+  for (std::size_t n = 0; n < omega.size(); ++n) {
+    waves.push_back(tally.sums_of_renewals([n, w = omega[n]](const Excursion& e) -> Wave {
+      const double t = e.slide + e.stick, turned = e.turned ? 1 : 0, kept = 1 - turned;
+      const auto c = e.transform[n], turn = std::polar(1.0, -w * t), both = std::conj(c) * turn;
+      return {std::norm(c), c, kept * turn, turned * turn, kept * both, turned * both, t};
+    }));
+  }
+  tally.report([=](const Tally&) {
+    const Estimate s = at_zero(moves);
+    Estimates all;
+    const auto of_wave = [&](std::size_t n) { return omega[n] == 0 ? s : at_frequency(waves[n]); };
+    if (!omega.empty()) all.push_back(array(cases::kSV, omega, of_wave));
+    all.push_back({&cases::kS0, {s}});
+    all.push_back({&cases::kDiffusivity, {s / 2}});
+    return all;
+  });
+}
 
 void resolvent_tally(Tally& tally) {
   const auto& lambda = tally.wanted().discount = tally.question().lambda;

@@ -97,6 +97,46 @@ model::NoiseMoments moments_of_pairs(const model::NoiseChain& noise, double mu_s
   return moments;
 }
 
+/// Integrals of f over an excursion.
+struct Integral {
+  Uncertain stick, slide;
+};
+
+// Rounding is the effect of iterative refinement, and the defect of an exact identity, relative to
+// the size of what is summed.
+Integral integral(const StationaryDistribution& distribution, double defect,
+                  const KolmogorovOperator& a, const model::Observable& f) {
+  const auto& process = distribution.process();
+  const auto part = generator::part_with_mean(f, process);
+  Integral sum;
+  const auto &now = distribution.excursion().stick_time,
+             &before = distribution.uncorrected().stick_time;
+  const auto means = f.formula ? process.noise.means([&](double x) { return part(x, 0, 0); })
+                               : std::vector<double>{};
+  double change = 0, size = 0;
+  for (std::size_t n = 0; n < now.size(); ++n) {
+    const int level = process.lowest_static() + static_cast<int>(n);
+    const double at_rest =
+        f.formula ? means[level - process.noise.lowest()] : part(process.noise.noise(level), 0, 0);
+    sum.stick.value += now[n] * at_rest;
+    change += (now[n] - before[n]) * at_rest;
+    size += now[n] * std::abs(at_rest);
+  }
+  sum.stick.error = std::abs(change) + defect * size;
+  const linalg::VecHandle sliding = a.values(part, f.formula != nullptr), product = a.zeros();
+  linalg::check(VecPointwiseMult(product, sliding, distribution.occupation()));
+  PetscReal sliding_size = 0;
+  linalg::check(VecNorm(product, NORM_1, &sliding_size));
+  sum.slide.value = linalg::dot(sliding, distribution.occupation());
+  sum.slide.error =
+      std::abs(sum.slide.value - linalg::dot(sliding, distribution.uncorrected_occupation())) +
+      defect * sliding_size;
+  if (!f.quadratic) {
+    sum.slide.error += std::abs(linalg::dot(a.overlooked(part), distribution.occupation()));
+  }
+  return sum;
+}
+
 }  // namespace
 
 double Excursion::mean_slide() const { return sum(slide_time); }
@@ -338,50 +378,6 @@ std::vector<double> marginal_of_noise(const generator::Discretisation& discretis
   }
   return time;
 }
-
-namespace {
-
-/// Integrals of f over an excursion.
-struct Integral {
-  Uncertain stick, slide;
-};
-
-// Rounding is the effect of iterative refinement, and the defect of an exact identity, relative to
-// the size of what is summed.
-Integral integral(const StationaryDistribution& distribution, double defect,
-                  const KolmogorovOperator& a, const model::Observable& f) {
-  const auto& process = distribution.process();
-  const auto part = generator::part_with_mean(f, process);
-  Integral sum;
-  const auto &now = distribution.excursion().stick_time,
-             &before = distribution.uncorrected().stick_time;
-  const auto means = f.formula ? process.noise.means([&](double x) { return part(x, 0, 0); })
-                               : std::vector<double>{};
-  double change = 0, size = 0;
-  for (std::size_t n = 0; n < now.size(); ++n) {
-    const int level = process.lowest_static() + static_cast<int>(n);
-    const double at_rest =
-        f.formula ? means[level - process.noise.lowest()] : part(process.noise.noise(level), 0, 0);
-    sum.stick.value += now[n] * at_rest;
-    change += (now[n] - before[n]) * at_rest;
-    size += now[n] * std::abs(at_rest);
-  }
-  sum.stick.error = std::abs(change) + defect * size;
-  const linalg::VecHandle sliding = a.values(part, f.formula != nullptr), product = a.zeros();
-  linalg::check(VecPointwiseMult(product, sliding, distribution.occupation()));
-  PetscReal sliding_size = 0;
-  linalg::check(VecNorm(product, NORM_1, &sliding_size));
-  sum.slide.value = linalg::dot(sliding, distribution.occupation());
-  sum.slide.error =
-      std::abs(sum.slide.value - linalg::dot(sliding, distribution.uncorrected_occupation())) +
-      defect * sliding_size;
-  if (!f.quadratic) {
-    sum.slide.error += std::abs(linalg::dot(a.overlooked(part), distribution.occupation()));
-  }
-  return sum;
-}
-
-}  // namespace
 
 void append_averages(const StationaryDistribution& distribution, const KolmogorovOperator& a,
                      const std::vector<model::Observable>& observables, Results& results) {

@@ -110,91 +110,6 @@ bool same(const std::string& header, const std::string& other) {
   return nlohmann::json::parse(header, nullptr, false) == nlohmann::json::parse(other);
 }
 
-}  // namespace
-
-Checkpoint::Checkpoint(std::string file, CheckpointKind kind, const Identity& identity)
-    : file_(std::move(file)), kind_(name_of(kind)), header_(header_of(kind_, identity)) {}
-
-void Checkpoint::refuse(const std::string& why) const {
-  throw BadInput(fmt::format("-checkpoint = {}: {}; name another file, or remove it", file_, why));
-}
-
-// Reports in what the header of the file differs.
-void Checkpoint::refuse_other(const std::string& header) const {
-  const Json json = Json::parse(header, nullptr, false), own = Json::parse(header_);
-  const auto agrees = [&](const char* key) {
-    return json.is_object() && json.contains(key) && json[key] == own[key];
-  };
-  if (!agrees("format") || !agrees("of") || !json.contains("run") || !json["run"].is_object()) {
-    refuse(fmt::format("is no checkpoint of a {} by this version of the program", kind_));
-  }
-  const auto refuse_difference = [&](const Json& names) {
-    for (const auto& option : names.items()) {
-      const auto found = json["run"].value(option.key(), Json("none"));
-      const auto wanted = own["run"].value(option.key(), Json("none"));
-      if (found == wanted) continue;
-      refuse(fmt::format("belongs to a {} with {} {}, not {}", kind_, option.key(), found.dump(),
-                         wanted.dump()));
-    }
-  };
-  refuse_difference(own["run"]);
-  refuse_difference(json["run"]);
-  refuse("belongs to another version of the program");
-}
-
-void Checkpoint::open(MPI_Comm comm, const Take& take) const {
-  std::string problem;
-  if (linalg::rank(comm) == 0) {
-    try {
-      read(take);
-    } catch (const BadInput& bad) {
-      problem = bad.what();
-    }
-  }
-  problem = linalg::first_text(comm, problem);
-  if (!problem.empty()) throw BadInput(problem);
-}
-
-void Checkpoint::read(const Take& take) const {
-  const LockedFile file(file_);
-  if (!file.regular()) refuse("is no regular file");
-  const std::string text = file.read_all();
-  if (header_.starts_with(text)) {  // new, or killed before the first line was whole
-    file.truncate(0);
-    file.append(header_);
-    return;
-  }
-  const std::string header = text.substr(0, text.find('\n') + 1);
-  if (!same(header, header_)) refuse_other(header);
-  const std::size_t whole = text.rfind('\n') + 1;
-  std::vector<std::string> lines = split(text.substr(header.size(), whole - header.size()), '\n');
-  if (!lines.empty()) lines.pop_back();  // behind the last end of line
-  // A file that is always replaced as a whole is never truncated.
-  if (kind_ == name_of(CheckpointKind::simulation) && (lines.size() > 1 || whole < text.size())) {
-    refuse("is damaged");
-  }
-  for (const auto& line : lines) {
-    const auto entry = unsealed(line);
-    if (!entry) refuse("is damaged");
-    try {
-      take(*entry);
-    } catch (const std::exception&) {
-      refuse("is damaged");
-    }
-  }
-  if (whole < text.size()) file.truncate(whole);
-}
-
-void Checkpoint::append(const std::string& entry) const {
-  LockedFile(file_).append(sealed(entry) + "\n");
-}
-
-void Checkpoint::replace(const std::string& entry) const {
-  write_text(file_, header_ + sealed(entry) + "\n");
-}
-
-namespace {
-
 using Clock = std::chrono::steady_clock;
 
 constexpr int kBatch = 256;  // excursions with one random stream
@@ -490,6 +405,87 @@ class Campaign {
 };
 
 }  // namespace
+
+Checkpoint::Checkpoint(std::string file, CheckpointKind kind, const Identity& identity)
+    : file_(std::move(file)), kind_(name_of(kind)), header_(header_of(kind_, identity)) {}
+
+void Checkpoint::refuse(const std::string& why) const {
+  throw BadInput(fmt::format("-checkpoint = {}: {}; name another file, or remove it", file_, why));
+}
+
+// Reports in what the header of the file differs.
+void Checkpoint::refuse_other(const std::string& header) const {
+  const Json json = Json::parse(header, nullptr, false), own = Json::parse(header_);
+  const auto agrees = [&](const char* key) {
+    return json.is_object() && json.contains(key) && json[key] == own[key];
+  };
+  if (!agrees("format") || !agrees("of") || !json.contains("run") || !json["run"].is_object()) {
+    refuse(fmt::format("is no checkpoint of a {} by this version of the program", kind_));
+  }
+  const auto refuse_difference = [&](const Json& names) {
+    for (const auto& option : names.items()) {
+      const auto found = json["run"].value(option.key(), Json("none"));
+      const auto wanted = own["run"].value(option.key(), Json("none"));
+      if (found == wanted) continue;
+      refuse(fmt::format("belongs to a {} with {} {}, not {}", kind_, option.key(), found.dump(),
+                         wanted.dump()));
+    }
+  };
+  refuse_difference(own["run"]);
+  refuse_difference(json["run"]);
+  refuse("belongs to another version of the program");
+}
+
+void Checkpoint::open(MPI_Comm comm, const Take& take) const {
+  std::string problem;
+  if (linalg::rank(comm) == 0) {
+    try {
+      read(take);
+    } catch (const BadInput& bad) {
+      problem = bad.what();
+    }
+  }
+  problem = linalg::first_text(comm, problem);
+  if (!problem.empty()) throw BadInput(problem);
+}
+
+void Checkpoint::read(const Take& take) const {
+  const LockedFile file(file_);
+  if (!file.regular()) refuse("is no regular file");
+  const std::string text = file.read_all();
+  if (header_.starts_with(text)) {  // new, or killed before the first line was whole
+    file.truncate(0);
+    file.append(header_);
+    return;
+  }
+  const std::string header = text.substr(0, text.find('\n') + 1);
+  if (!same(header, header_)) refuse_other(header);
+  const std::size_t whole = text.rfind('\n') + 1;
+  std::vector<std::string> lines = split(text.substr(header.size(), whole - header.size()), '\n');
+  if (!lines.empty()) lines.pop_back();  // behind the last end of line
+  // A file that is always replaced as a whole is never truncated.
+  if (kind_ == name_of(CheckpointKind::simulation) && (lines.size() > 1 || whole < text.size())) {
+    refuse("is damaged");
+  }
+  for (const auto& line : lines) {
+    const auto entry = unsealed(line);
+    if (!entry) refuse("is damaged");
+    try {
+      take(*entry);
+    } catch (const std::exception&) {
+      refuse("is damaged");
+    }
+  }
+  if (whole < text.size()) file.truncate(whole);
+}
+
+void Checkpoint::append(const std::string& entry) const {
+  LockedFile(file_).append(sealed(entry) + "\n");
+}
+
+void Checkpoint::replace(const std::string& entry) const {
+  write_text(file_, header_ + sealed(entry) + "\n");
+}
 
 Simulated simulate(MPI_Comm comm, const Case& given, const std::string& checkpoint,
                    const SimulationProgress& progress) {

@@ -16,26 +16,6 @@ namespace {
 // ratio of changes one step before.
 double continued(double a, double b, double c) { return a + (a - b) / (b - c) * (a - b); }
 
-}  // namespace
-
-bool is_computed(const Place& place) {
-  const auto [k, l] = place;
-  return l <= 4 || (l == 5 && k <= 6) || (l == 6 && k <= 4);
-}
-
-void extrapolate(std::map<Place, double>& s) {
-  for (int l = 1; l <= kMostSteps; ++l) {
-    for (int k = 1; k <= kMostPoints; ++k) {
-      if (is_computed({k, l})) continue;
-      const double vertical = continued(s[{k, l - 1}], s[{k, l - 2}], s[{k, l - 3}]);
-      const double horizontal = continued(s[{k - 1, l}], s[{k - 2, l}], s[{k - 3, l}]);
-      s[{k, l}] = (vertical + horizontal) / 2;
-    }
-  }
-}
-
-namespace {
-
 /// All runs of the index set, and the converged values of the two finest steps.
 class Grid {
  public:
@@ -109,26 +89,6 @@ class Grid {
   std::map<Place, Run> runs_;
   std::map<int, Run> converged_;
 };
-
-}  // namespace
-
-Study study_heuristic(const Context& context) {
-  Grid grid(context);
-  grid.run();
-  Study study;
-  study.kind = "heuristic";
-  study.runs = grid.runs();
-  for (const auto& result : grid.finest()) {
-    study.tables.push_back(grid.table(result.key));
-    double worst = 0;
-    for (const auto& row : study.tables.back().rows) worst = std::max(worst, row[4]);
-    study.conclusions.push_back(
-        fmt::format("{}: largest relative error of extrapolated values {:.1e}", result.key, worst));
-  }
-  return study;
-}
-
-namespace {
 
 constexpr int kFinestDegree = 16;
 
@@ -335,6 +295,38 @@ class CostStudy {
 };
 
 }  // namespace
+
+bool is_computed(const Place& place) {
+  const auto [k, l] = place;
+  return l <= 4 || (l == 5 && k <= 6) || (l == 6 && k <= 4);
+}
+
+void extrapolate(std::map<Place, double>& s) {
+  for (int l = 1; l <= kMostSteps; ++l) {
+    for (int k = 1; k <= kMostPoints; ++k) {
+      if (is_computed({k, l})) continue;
+      const double vertical = continued(s[{k, l - 1}], s[{k, l - 2}], s[{k, l - 3}]);
+      const double horizontal = continued(s[{k - 1, l}], s[{k - 2, l}], s[{k - 3, l}]);
+      s[{k, l}] = (vertical + horizontal) / 2;
+    }
+  }
+}
+
+Study study_heuristic(const Context& context) {
+  Grid grid(context);
+  grid.run();
+  Study study;
+  study.kind = "heuristic";
+  study.runs = grid.runs();
+  for (const auto& result : grid.finest()) {
+    study.tables.push_back(grid.table(result.key));
+    double worst = 0;
+    for (const auto& row : study.tables.back().rows) worst = std::max(worst, row[4]);
+    study.conclusions.push_back(
+        fmt::format("{}: largest relative error of extrapolated values {:.1e}", result.key, worst));
+  }
+  return study;
+}
 
 Study study_cost(const Context& context) { return CostStudy(context).run_study(); }
 

@@ -122,6 +122,29 @@ double truncation(const model::Scene& scene, const Resolution& r, double toleran
   return cuts_levels || cuts_velocities ? margin * tolerance : 0;
 }
 
+// By the solver that will serve it.
+generator::FactorCost factor_cost(const model::Scene& scene, const Resolution& r,
+                                  cases::Factors factors, int ranks) {
+  const auto n = static_cast<double>(unknowns(scene, r));
+  constexpr double countable = 1e8;  // beyond, the matrix alone fills a machine
+  if (factors != cases::Factors::elements || n > countable) {
+    return generator::sparse_cost(factors, r.scheme, n, static_cast<double>(r.noise_nodes()));
+  }
+  const auto velocities = velocities_of(scene, r);
+  const auto process = scene.process(r.levels);
+  const auto noise = r.noise ? r.noise : std::make_shared<const generator::Nodes>(process);
+  const auto cost = generator::elimination_cost(
+      process, dynamic_cast<const generator::HpDiscretisation&>(*velocities), *noise, ranks);
+  const bool alike = generator::branches_share_factors(process, r.noise == nullptr, *velocities);
+  const int branches = alike ? 1 : r.branches;
+  return {branches * cost.entries, branches * cost.bytes, branches * cost.operations};
+}
+
+cases::Factors factors_of(const model::Scene& scene, const Resolution& r) {
+  return generator::chosen_factors(r.factors, r.scheme, r.noise_nodes(), r.noise == nullptr,
+                                   scene.process(r.levels).noise.neighbours_only());
+}
+
 }  // namespace
 
 int levels_for(const model::Scene& scene, double tolerance, const generator::Rates& rates) {
@@ -225,33 +248,6 @@ std::int64_t unknowns(const model::Scene& scene, const Resolution& resolution) {
   constexpr double most = 9e18;
   return static_cast<std::int64_t>(std::min(total, most));
 }
-
-namespace {
-
-// By the solver that will serve it.
-generator::FactorCost factor_cost(const model::Scene& scene, const Resolution& r,
-                                  cases::Factors factors, int ranks) {
-  const auto n = static_cast<double>(unknowns(scene, r));
-  constexpr double countable = 1e8;  // beyond, the matrix alone fills a machine
-  if (factors != cases::Factors::elements || n > countable) {
-    return generator::sparse_cost(factors, r.scheme, n, static_cast<double>(r.noise_nodes()));
-  }
-  const auto velocities = velocities_of(scene, r);
-  const auto process = scene.process(r.levels);
-  const auto noise = r.noise ? r.noise : std::make_shared<const generator::Nodes>(process);
-  const auto cost = generator::elimination_cost(
-      process, dynamic_cast<const generator::HpDiscretisation&>(*velocities), *noise, ranks);
-  const bool alike = generator::branches_share_factors(process, r.noise == nullptr, *velocities);
-  const int branches = alike ? 1 : r.branches;
-  return {branches * cost.entries, branches * cost.bytes, branches * cost.operations};
-}
-
-cases::Factors factors_of(const model::Scene& scene, const Resolution& r) {
-  return generator::chosen_factors(r.factors, r.scheme, r.noise_nodes(), r.noise == nullptr,
-                                   scene.process(r.levels).noise.neighbours_only());
-}
-
-}  // namespace
 
 // The matrix, its magnitudes and what a solver copies come on top of the factors.
 double predicted_bytes(const model::Scene& scene, const Resolution& resolution, int ranks) {

@@ -152,57 +152,6 @@ void share_between_neighbours(std::vector<double>& errors, const Result& result)
   }
 }
 
-}  // namespace
-
-void require_least_error(double least, Results& results) {
-  for (auto& result : results) {
-    for (std::size_t e = 0; e < result.value.size(); ++e) {
-      result.error[e] = std::max(result.error[e], least * quantities::size_of(result, e));
-    }
-  }
-}
-
-void doubt_without_digit(double digit, Result& result) {
-  for (std::size_t e = 0; e < result.value.size(); ++e) {
-    const double size = std::abs(result.value[e]);
-    if (result.error[e] > digit * size) result.error[e] = std::max(result.error[e], size);
-  }
-}
-
-Changes add_discretisation(const ErrorPerChange& factor, const Results& coarse,
-                           const Changes& before, Results& results) {
-  Changes changes(results.size()), errors(results.size());
-  for (std::size_t r = 0; r < results.size(); ++r) {
-    const auto& value = results[r].value;
-    for (std::size_t e = 0; e < value.size(); ++e) {
-      // A mode that the coarser grid did not find is all change.
-      const double last = e < coarse[r].value.size() ? coarse[r].value[e] : 0;
-      changes[r].push_back(std::abs(value[e] - last));
-    }
-  }
-  const Falls falls(changes, before, results);
-  for (std::size_t r = 0; r < results.size(); ++r) {
-    const bool falls_count = factor.of_fall < kInfinity;
-    const double most = falls_count ? factor.of_fall * falls.of(r) : kInfinity;
-    for (std::size_t e = 0; e < changes[r].size(); ++e) {
-      const auto of = factor_of(results[r], e, factor);
-      const bool known = r < before.size() && e < before[r].size();
-      const double last = std::min(of.last, most);
-      const double both = std::hypot(last * changes[r][e], known ? of.earlier * before[r][e] : 0);
-      errors[r].push_back(of.alone * both);
-    }
-  }
-  share_between_means(factor, results, errors);
-  if (!before.empty()) limit_fall(factor, coarse, results, errors);
-  for (std::size_t r = 0; r < results.size(); ++r) {
-    share_between_neighbours(errors[r], results[r]);
-    for (std::size_t e = 0; e < errors[r].size(); ++e) results[r].error[e] += errors[r][e];
-  }
-  return changes;
-}
-
-namespace {
-
 constexpr double kRounding = 1e-10;  // where errors are smaller, they are estimates themselves
 
 /// What a result has to keep to.
@@ -262,18 +211,6 @@ std::string broken_by(const Result& result) {
   if (broken.empty() && ordered) broken = wrong_way(result, bounds->direction);
   return broken;
 }
-
-}  // namespace
-
-std::string broken_bound(const quantities::Results& results) {
-  for (const auto& result : results) {
-    std::string broken = broken_by(result);
-    if (!broken.empty()) return broken;
-  }
-  return "";
-}
-
-namespace {
 
 constexpr double kFamilyLevel = 1e-3;
 
@@ -335,6 +272,61 @@ void judge(Comparison& comparison) {
 }
 
 }  // namespace
+
+void require_least_error(double least, Results& results) {
+  for (auto& result : results) {
+    for (std::size_t e = 0; e < result.value.size(); ++e) {
+      result.error[e] = std::max(result.error[e], least * quantities::size_of(result, e));
+    }
+  }
+}
+
+void doubt_without_digit(double digit, Result& result) {
+  for (std::size_t e = 0; e < result.value.size(); ++e) {
+    const double size = std::abs(result.value[e]);
+    if (result.error[e] > digit * size) result.error[e] = std::max(result.error[e], size);
+  }
+}
+
+Changes add_discretisation(const ErrorPerChange& factor, const Results& coarse,
+                           const Changes& before, Results& results) {
+  Changes changes(results.size()), errors(results.size());
+  for (std::size_t r = 0; r < results.size(); ++r) {
+    const auto& value = results[r].value;
+    for (std::size_t e = 0; e < value.size(); ++e) {
+      // A mode that the coarser grid did not find is all change.
+      const double last = e < coarse[r].value.size() ? coarse[r].value[e] : 0;
+      changes[r].push_back(std::abs(value[e] - last));
+    }
+  }
+  const Falls falls(changes, before, results);
+  for (std::size_t r = 0; r < results.size(); ++r) {
+    const bool falls_count = factor.of_fall < kInfinity;
+    const double most = falls_count ? factor.of_fall * falls.of(r) : kInfinity;
+    for (std::size_t e = 0; e < changes[r].size(); ++e) {
+      const auto of = factor_of(results[r], e, factor);
+      const bool known = r < before.size() && e < before[r].size();
+      const double last = std::min(of.last, most);
+      const double both = std::hypot(last * changes[r][e], known ? of.earlier * before[r][e] : 0);
+      errors[r].push_back(of.alone * both);
+    }
+  }
+  share_between_means(factor, results, errors);
+  if (!before.empty()) limit_fall(factor, coarse, results, errors);
+  for (std::size_t r = 0; r < results.size(); ++r) {
+    share_between_neighbours(errors[r], results[r]);
+    for (std::size_t e = 0; e < errors[r].size(); ++e) results[r].error[e] += errors[r][e];
+  }
+  return changes;
+}
+
+std::string broken_bound(const quantities::Results& results) {
+  for (const auto& result : results) {
+    std::string broken = broken_by(result);
+    if (!broken.empty()) return broken;
+  }
+  return "";
+}
 
 const char* verdict_text(Verdict verdict) {
   switch (verdict) {

@@ -284,26 +284,6 @@ class Boundary {
   LuFactors<double> factors_;
 };
 
-}  // namespace
-
-FluidQueue::FluidQueue(const model::Process& process, double lambda) {
-  if (!process.drag.is_none()) throw std::invalid_argument("a fluid queue has no drag");
-  const Queue upper(process, lambda);
-  std::optional<Queue> lower;
-  if (!process.symmetric()) lower.emplace(process.mirrored(), lambda);
-  const Queue& other = lower ? *lower : upper;
-  residual_ = std::max(upper.residual(), other.residual());
-  const Boundary boundary(upper, other);
-  const auto levels = static_cast<std::size_t>(process.noise.count());
-  const std::size_t below = lower ? levels : 0;
-  plus_ = process.exit_level(true);
-  for (int level : lower ? process.starts() : std::vector{plus_}) {
-    from_.emplace(level, boundary.slide(level, levels + below, below));
-  }
-}
-
-namespace {
-
 FluidQueue solve(const model::Process& process, double lambda) {
   try {
     return FluidQueue(process, lambda);
@@ -398,6 +378,22 @@ void append_laplace(const Problem& problem, const Excursions& excursions, double
 }
 
 }  // namespace
+
+FluidQueue::FluidQueue(const model::Process& process, double lambda) {
+  if (!process.drag.is_none()) throw std::invalid_argument("a fluid queue has no drag");
+  const Queue upper(process, lambda);
+  std::optional<Queue> lower;
+  if (!process.symmetric()) lower.emplace(process.mirrored(), lambda);
+  const Queue& other = lower ? *lower : upper;
+  residual_ = std::max(upper.residual(), other.residual());
+  const Boundary boundary(upper, other);
+  const auto levels = static_cast<std::size_t>(process.noise.count());
+  const std::size_t below = lower ? levels : 0;
+  plus_ = process.exit_level(true);
+  for (int level : lower ? process.starts() : std::vector{plus_}) {
+    from_.emplace(level, boundary.slide(level, levels + below, below));
+  }
+}
 
 Evaluation by_fluid_queue(const Problem& problem) {
   const auto& question = problem.given.question;

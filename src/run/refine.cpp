@@ -85,152 +85,6 @@ generator::Integrands integrands_of(const cases::Question& question, double phas
   return integrands;
 }
 
-}  // namespace
-
-RefinementSequence::RefinementSequence(const cases::Case& given)
-    : scene_(given.scene),
-      method_(given.method),
-      accuracy_(given.question.accuracy),
-      needs_(quantities::plan_of(given).needs) {
-  const auto process = given.scene.meant();
-  std::ranges::copy_if(needs_.omega, std::back_inserter(waves_),
-                       [&](double omega) { return generator::has_waves(process, omega); });
-  first_degree_ = method_.degree.value_or(
-      starting_degree(given.question, !waves_.empty(), needs_.rates.lengths));
-  table_ = process.noise.table != nullptr;
-  integrands_ = integrands_of(given.question, needs_.phase);
-  const bool full_grid = given.method.row().full_grid;
-  const bool both = given.question.any(&cases::Entry::both_branches);
-  branches_ = full_grid || both || !given.scene.symmetric() ? 2 : 1;
-  // On nodes the residuals of eigenvectors, which stand for errors, stay about twice as large.
-  const bool near_rounding = needs_.modes && accuracy_ < kModesOnNodes;
-  // Groups are wide at noises that are rare. Weights exp(s x(t)) move the noise by 2 s D, against
-  // its deviation (D/tau)^1/2.
-  constexpr double most_moved = 2;
-  const auto& noise = process.noise;
-  const double moved =
-      2 * needs_.rates.tilt * std::sqrt(noise.intensity() * noise.correlation_time());
-  all_levels_ = full_grid || method_.noise_degree == 0 || near_rounding ||
-                (!method_.noise_degree && moved > most_moved) || !noise.neighbours_only();
-  tail_counts_ =
-      !given.question.observables.empty() || given.question.any(&cases::Entry::weighs_tail);
-  last_ = method_.fixed() ? 1 : free_refinement_levels();
-  if (const auto* projector = scene_.projector()) {
-    while (last_ > 1 && !projector->fits(scene_.thresholds(), degree(last_))) --last_;
-  }
-}
-
-int RefinementSequence::free_refinement_levels() const {
-  switch (method_.scheme) {
-  case cases::Scheme::hp: return 1 + kHighestDegree - first_degree_;
-  case cases::Scheme::upwind: return 20;
-  case cases::Scheme::none: return 3;
-  }
-  return 1;
-}
-
-int RefinementSequence::first() const {
-  return method_.scheme == cases::Scheme::hp && first_degree_ > 1 ? -1 : 0;
-}
-
-int RefinementSequence::degree(int n) const { return std::max(0, first_degree_ + n - 1); }
-
-int RefinementSequence::points(int n) const {
-  if (!method_.points) return kFirstPoints << n;
-  if (n == 1) return *method_.points;
-  return *method_.points == 1 ? 2 : (*method_.points + 1) / 2;
-}
-
-double RefinementSequence::tail_tolerance(int n) const {
-  if (method_.scheme == cases::Scheme::upwind) return 1e-3 * std::min(accuracy_, 1e-6);
-  if (method_.scheme == cases::Scheme::none) return std::max(accuracy_ * std::pow(1e-2, n), 1e-18);
-  // The first level reaches as far as the second where later ones reach further: where a body may
-  // start does not depend on what is only compared with.
-  const double tolerance = std::pow(10.0, -(degree(tail_counts_ ? std::max(n, 0) : 1) + 4));
-  // Modes have a mean square under the density: what its root is at the end is an error.
-  return needs_.modes ? std::max(tolerance * tolerance, 1e-36) : std::max(tolerance, 1e-18);
-}
-
-generator::Grouping RefinementSequence::grouping(int n) const {
-  generator::Grouping grouping;
-  if (all_levels_) return grouping;
-  grouping.grading = method_.noise_grading;
-  // Never the same on two refinement levels, or no change would show the error.
-  constexpr int least = 2;
-  grouping.degree = method_.noise_degree ? std::max(0, *method_.noise_degree + n - 1)
-                                         : std::max(least + n, degree(n) - kDegreesLessInNoise);
-  return grouping;
-}
-
-// Elements follow waves where the first estimate asks for it: in most cases the noise damps them.
-// Levels of a table may not, and then changes between coarse discretisations say nothing.
-std::vector<double> RefinementSequence::waves(int n) const {
-  constexpr int first_with_waves = 2;
-  const bool follows = n >= first_with_waves || method_.fixed() || table_;
-  return follows ? waves_ : std::vector<double>{};
-}
-
-const Resolution& RefinementSequence::refinement_level(int n) const {
-  const auto known = refinement_levels_.find(n);
-  return known != refinement_levels_.end() ? known->second
-                                           : refinement_levels_.emplace(n, made(n)).first->second;
-}
-
-Resolution RefinementSequence::made(int n) const {
-  Resolution r;
-  switch (method_.scheme) {
-  case cases::Scheme::hp:
-    r = hp_resolution(scene_, degree(n), method_.layers.value_or(0), tail_tolerance(n),
-                      needs_.rates, grouping(n));
-    r.waves = waves(n);
-    r.integrands = integrands_;
-    r.whole_tail = tail_counts_;
-    r.least_degree = n + 1;  // so that all degrees rise from one refinement level to the next
-    break;
-  case cases::Scheme::upwind:
-    r = upwind_resolution(scene_, points(n), tail_tolerance(n), needs_.rates);
-    break;
-  case cases::Scheme::none: r = exact_resolution(scene_, tail_tolerance(n)); break;
-  }
-  r.branches = branches_;
-  r.factors = method_.factors;
-  return r;
-}
-
-ErrorPerChange RefinementSequence::error_per_change(int n) const {
-  switch (method_.scheme) {
-  case cases::Scheme::hp: {
-    const int weakening = scene_.friction.stribeck ? kDegreesOfWeakening : 0;
-    const double moving = tail_counts_ ? kOnOtherElements : 1;
-    const double degrees = moving * std::max(kLeastDegreeOfErrors, degree(n) + weakening);
-    ErrorPerChange factor = kHpErrorPerChange;
-    factor.last *= degrees;
-    factor.earlier *= degrees;
-    if (!waves_.empty()) factor.waves_from = std::ranges::min(waves_);
-    if (const auto* projector = scene_.projector()) {
-      factor.last *= scene_.spring && !scene_.noise.gaussian ? kLastOfCurves : kLastOfProjections;
-      if (projector->damped()) {
-        factor.earlier *= kEarlierOfProjections;
-        factor.of_fall = kFallOfProjections;
-        factor.most_fall = kInfinity;
-      }
-    } else if (table_) {
-      factor.earlier *= kEarlierOfTables;
-      factor.of_other_family = kOtherFamilyOfTables;
-    }
-    return factor;
-  }
-  case cases::Scheme::upwind: {
-    const double ratio = static_cast<double>(points(n)) / points(n - 1);
-    return {order_margin(points(n)) / std::abs(ratio - 1), 0};
-  }
-  case cases::Scheme::none: return {1, 0};
-  }
-  return {};
-}
-
-namespace {
-
 std::string gigabytes(double bytes) { return fmt::format("{:.2g} GB", bytes / 1e9); }
 
 Solved evaluated(MPI_Comm comm, const cases::Case& given, const Resolution& resolution,
@@ -631,6 +485,148 @@ class Refiner {
 };
 
 }  // namespace
+
+RefinementSequence::RefinementSequence(const cases::Case& given)
+    : scene_(given.scene),
+      method_(given.method),
+      accuracy_(given.question.accuracy),
+      needs_(quantities::plan_of(given).needs) {
+  const auto process = given.scene.meant();
+  std::ranges::copy_if(needs_.omega, std::back_inserter(waves_),
+                       [&](double omega) { return generator::has_waves(process, omega); });
+  first_degree_ = method_.degree.value_or(
+      starting_degree(given.question, !waves_.empty(), needs_.rates.lengths));
+  table_ = process.noise.table != nullptr;
+  integrands_ = integrands_of(given.question, needs_.phase);
+  const bool full_grid = given.method.row().full_grid;
+  const bool both = given.question.any(&cases::Entry::both_branches);
+  branches_ = full_grid || both || !given.scene.symmetric() ? 2 : 1;
+  // On nodes the residuals of eigenvectors, which stand for errors, stay about twice as large.
+  const bool near_rounding = needs_.modes && accuracy_ < kModesOnNodes;
+  // Groups are wide at noises that are rare. Weights exp(s x(t)) move the noise by 2 s D, against
+  // its deviation (D/tau)^1/2.
+  constexpr double most_moved = 2;
+  const auto& noise = process.noise;
+  const double moved =
+      2 * needs_.rates.tilt * std::sqrt(noise.intensity() * noise.correlation_time());
+  all_levels_ = full_grid || method_.noise_degree == 0 || near_rounding ||
+                (!method_.noise_degree && moved > most_moved) || !noise.neighbours_only();
+  tail_counts_ =
+      !given.question.observables.empty() || given.question.any(&cases::Entry::weighs_tail);
+  last_ = method_.fixed() ? 1 : free_refinement_levels();
+  if (const auto* projector = scene_.projector()) {
+    while (last_ > 1 && !projector->fits(scene_.thresholds(), degree(last_))) --last_;
+  }
+}
+
+int RefinementSequence::free_refinement_levels() const {
+  switch (method_.scheme) {
+  case cases::Scheme::hp: return 1 + kHighestDegree - first_degree_;
+  case cases::Scheme::upwind: return 20;
+  case cases::Scheme::none: return 3;
+  }
+  return 1;
+}
+
+int RefinementSequence::first() const {
+  return method_.scheme == cases::Scheme::hp && first_degree_ > 1 ? -1 : 0;
+}
+
+int RefinementSequence::degree(int n) const { return std::max(0, first_degree_ + n - 1); }
+
+int RefinementSequence::points(int n) const {
+  if (!method_.points) return kFirstPoints << n;
+  if (n == 1) return *method_.points;
+  return *method_.points == 1 ? 2 : (*method_.points + 1) / 2;
+}
+
+double RefinementSequence::tail_tolerance(int n) const {
+  if (method_.scheme == cases::Scheme::upwind) return 1e-3 * std::min(accuracy_, 1e-6);
+  if (method_.scheme == cases::Scheme::none) return std::max(accuracy_ * std::pow(1e-2, n), 1e-18);
+  // The first level reaches as far as the second where later ones reach further: where a body may
+  // start does not depend on what is only compared with.
+  const double tolerance = std::pow(10.0, -(degree(tail_counts_ ? std::max(n, 0) : 1) + 4));
+  // Modes have a mean square under the density: what its root is at the end is an error.
+  return needs_.modes ? std::max(tolerance * tolerance, 1e-36) : std::max(tolerance, 1e-18);
+}
+
+generator::Grouping RefinementSequence::grouping(int n) const {
+  generator::Grouping grouping;
+  if (all_levels_) return grouping;
+  grouping.grading = method_.noise_grading;
+  // Never the same on two refinement levels, or no change would show the error.
+  constexpr int least = 2;
+  grouping.degree = method_.noise_degree ? std::max(0, *method_.noise_degree + n - 1)
+                                         : std::max(least + n, degree(n) - kDegreesLessInNoise);
+  return grouping;
+}
+
+// Elements follow waves where the first estimate asks for it: in most cases the noise damps them.
+// Levels of a table may not, and then changes between coarse discretisations say nothing.
+std::vector<double> RefinementSequence::waves(int n) const {
+  constexpr int first_with_waves = 2;
+  const bool follows = n >= first_with_waves || method_.fixed() || table_;
+  return follows ? waves_ : std::vector<double>{};
+}
+
+const Resolution& RefinementSequence::refinement_level(int n) const {
+  const auto known = refinement_levels_.find(n);
+  return known != refinement_levels_.end() ? known->second
+                                           : refinement_levels_.emplace(n, made(n)).first->second;
+}
+
+Resolution RefinementSequence::made(int n) const {
+  Resolution r;
+  switch (method_.scheme) {
+  case cases::Scheme::hp:
+    r = hp_resolution(scene_, degree(n), method_.layers.value_or(0), tail_tolerance(n),
+                      needs_.rates, grouping(n));
+    r.waves = waves(n);
+    r.integrands = integrands_;
+    r.whole_tail = tail_counts_;
+    r.least_degree = n + 1;  // so that all degrees rise from one refinement level to the next
+    break;
+  case cases::Scheme::upwind:
+    r = upwind_resolution(scene_, points(n), tail_tolerance(n), needs_.rates);
+    break;
+  case cases::Scheme::none: r = exact_resolution(scene_, tail_tolerance(n)); break;
+  }
+  r.branches = branches_;
+  r.factors = method_.factors;
+  return r;
+}
+
+ErrorPerChange RefinementSequence::error_per_change(int n) const {
+  switch (method_.scheme) {
+  case cases::Scheme::hp: {
+    const int weakening = scene_.friction.stribeck ? kDegreesOfWeakening : 0;
+    const double moving = tail_counts_ ? kOnOtherElements : 1;
+    const double degrees = moving * std::max(kLeastDegreeOfErrors, degree(n) + weakening);
+    ErrorPerChange factor = kHpErrorPerChange;
+    factor.last *= degrees;
+    factor.earlier *= degrees;
+    if (!waves_.empty()) factor.waves_from = std::ranges::min(waves_);
+    if (const auto* projector = scene_.projector()) {
+      factor.last *= scene_.spring && !scene_.noise.gaussian ? kLastOfCurves : kLastOfProjections;
+      if (projector->damped()) {
+        factor.earlier *= kEarlierOfProjections;
+        factor.of_fall = kFallOfProjections;
+        factor.most_fall = kInfinity;
+      }
+    } else if (table_) {
+      factor.earlier *= kEarlierOfTables;
+      factor.of_other_family = kOtherFamilyOfTables;
+    }
+    return factor;
+  }
+  case cases::Scheme::upwind: {
+    const double ratio = static_cast<double>(points(n)) / points(n - 1);
+    return {order_margin(points(n)) / std::abs(ratio - 1), 0};
+  }
+  case cases::Scheme::none: return {1, 0};
+  }
+  return {};
+}
 
 std::string shortfall_of_memory(MPI_Comm comm, const model::Scene& scene,
                                 const Resolution& resolution) {

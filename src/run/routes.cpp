@@ -91,33 +91,6 @@ std::vector<Average> averages(const Problem& problem) {
   return all;
 }
 
-}  // namespace
-
-void append_averages(const Problem& problem, const std::vector<Uncertain>& values,
-                     quantities::Results& results) {
-  const auto all = averages(problem);
-  const cases::Question& question = problem.given.question;
-  const auto& process = problem.discretisation.process;
-  const double beyond =
-      model::noise_moments(process.noise, process.lowest_static(), process.highest_static()).beyond;
-  const double defect = std::abs(values[kBeyond].value / beyond - 1);
-  for (int n = kBeyond + 1; n < static_cast<int>(all.size()); ++n) {
-    Uncertain value = values[n];
-    const bool phase = all[n].result.kind == Kind::share;
-    if (phase && !question.wants(Quantity::sticking)) continue;
-    if (all[n].given >= 0) value = value / values[all[n].given];
-    double share = std::abs(value.value);
-    if (phase && n == kStick) share = std::min(share, std::abs(values[kSlide].value));
-    value.error += defect * share;
-    results.push_back(scalar(all[n].result, value));
-  }
-  if (question.wants(Quantity::moments) && !process.drifts()) {
-    results.push_back(quantities::scalar(cases::kEV, 0, 0));  // by symmetry
-  }
-}
-
-namespace {
-
 // Everything from the sliding operator and the static chain, task by task.
 Evaluation by_excursion(const Problem& problem) {
   Evaluation evaluation;
@@ -478,6 +451,29 @@ constexpr Computation kComputations[] = {{Route::excursion, by_excursion},
                                          {Route::fluid_queue, by_fluid_queue}};
 
 }  // namespace
+
+void append_averages(const Problem& problem, const std::vector<Uncertain>& values,
+                     quantities::Results& results) {
+  const auto all = averages(problem);
+  const cases::Question& question = problem.given.question;
+  const auto& process = problem.discretisation.process;
+  const double beyond =
+      model::noise_moments(process.noise, process.lowest_static(), process.highest_static()).beyond;
+  const double defect = std::abs(values[kBeyond].value / beyond - 1);
+  for (int n = kBeyond + 1; n < static_cast<int>(all.size()); ++n) {
+    Uncertain value = values[n];
+    const bool phase = all[n].result.kind == Kind::share;
+    if (phase && !question.wants(Quantity::sticking)) continue;
+    if (all[n].given >= 0) value = value / values[all[n].given];
+    double share = std::abs(value.value);
+    if (phase && n == kStick) share = std::min(share, std::abs(values[kSlide].value));
+    value.error += defect * share;
+    results.push_back(scalar(all[n].result, value));
+  }
+  if (question.wants(Quantity::moments) && !process.drifts()) {
+    results.push_back(quantities::scalar(cases::kEV, 0, 0));  // by symmetry
+  }
+}
 
 Evaluation evaluate(const Problem& problem) {
   for (const auto& [route, evaluate_by] : kComputations) {

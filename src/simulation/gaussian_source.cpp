@@ -186,24 +186,6 @@ Scales scales_of(const model::Process& process) {
   return {fastest + slope + root, 1 / slowest + 2 / decay + decay / process.stiffness};
 }
 
-}  // namespace
-
-void PathSource::draw_from(int level, RandomStream& random, Excursion& e) {
-  if (level == kPathBegins) {
-    begin(random);
-    while (elapsed < span_) follow_one(random, e);
-    end_ = span_ * (2 + std::floor((elapsed - span_) / span_));
-  }
-  follow_one(random, e);
-  e.next = elapsed < end_ ? kPathBegins + 1 : kPathBegins;
-}
-
-double span_of_sample(const model::Process& process) {
-  return kMemories * scales_of(process).memory;
-}
-
-namespace {
-
 /// Paths by exact Gaussian steps. While a body rests they end where static friction is overcome, by
 /// the law of a Brownian bridge. While it slides the force within a step is its mean, and steps
 /// shorten until the noise can turn neither the speed within them nor, where the body stops,
@@ -480,6 +462,20 @@ class GaussianSource final : public PathSource {
 };
 
 }  // namespace
+
+void PathSource::draw_from(int level, RandomStream& random, Excursion& e) {
+  if (level == kPathBegins) {
+    begin(random);
+    while (elapsed < span_) follow_one(random, e);
+    end_ = span_ * (2 + std::floor((elapsed - span_) / span_));
+  }
+  follow_one(random, e);
+  e.next = elapsed < end_ ? kPathBegins + 1 : kPathBegins;
+}
+
+double span_of_sample(const model::Process& process) {
+  return kMemories * scales_of(process).memory;
+}
 
 std::unique_ptr<ExcursionSource> make_gaussian_source(const model::Process& process,
                                                       const Wanted& wanted) {

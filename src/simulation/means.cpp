@@ -59,6 +59,22 @@ Estimate proportion(double successes, double trials) {
   return {successes / trials, low, high};
 }
 
+constexpr double kSmallest = 1e-8, kLargest = 1e5;  // sizes of y in units of the scale
+constexpr std::size_t kKept = 3;
+
+// Two samples of the same count, mean and mean square of the weight, which the co-moments do not
+// tell from all.
+void add_group(Comoments& all, double turned, double within,
+               const std::array<double, kKept>& sums) {
+  const auto [count, weight, square] = sums;
+  if (count == 0) return;
+  const double mean = weight / count,
+               deviation = std::sqrt(std::max(square / count - mean * mean, 0.0));
+  for (const double w : {mean - deviation, mean + deviation}) {
+    all.add(std::array{turned, w, w * within}, count / 2);
+  }
+}
+
 }  // namespace
 
 Smooth operator+(const Smooth& a, const Smooth& b) { return {a.value + b.value, sum(a, 1, b, 1)}; }
@@ -150,26 +166,6 @@ Estimate Histogram::probability(double low, double high) const {
   const std::size_t first = low > 0 ? bin(low) : 0, last = std::isfinite(high) ? bin(high) : bins_;
   return mean([&](std::size_t n) { return first <= n && n < last ? 1.0 : 0.0; });
 }
-
-namespace {
-
-constexpr double kSmallest = 1e-8, kLargest = 1e5;  // sizes of y in units of the scale
-constexpr std::size_t kKept = 3;
-
-// Two samples of the same count, mean and mean square of the weight, which the co-moments do not
-// tell from all.
-void add_group(Comoments& all, double turned, double within,
-               const std::array<double, kKept>& sums) {
-  const auto [count, weight, square] = sums;
-  if (count == 0) return;
-  const double mean = weight / count,
-               deviation = std::sqrt(std::max(square / count - mean * mean, 0.0));
-  for (const double w : {mean - deviation, mean + deviation}) {
-    all.add(std::array{turned, w, w * within}, count / 2);
-  }
-}
-
-}  // namespace
 
 PathBins::PathBins(Sampled sampled, bool both_signs, double scale, double step)
     : sampled_(sampled),

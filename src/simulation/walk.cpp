@@ -117,61 +117,6 @@ void begin_stationary(Walk& walk, const model::Process& process, RandomStream& r
   walk.advance(time);
 }
 
-}  // namespace
-
-State Walk::advance(double time) {
-  while (state().time < time) step(time);
-  return state();
-}
-
-double Walk::end_excursion() {
-  bool rested = false;
-  for (;; step(kInfinity)) {
-    const State now = state();
-    if (rested && now.y != 0) return now.time;
-    rested = rested || now.y == 0;
-  }
-}
-
-std::unique_ptr<Walk> make_walk(const model::Process& process, bool travel) {
-  if (process.drag.is_linear()) return std::make_unique<Walker<LinearFlow>>(process, travel);
-  return std::make_unique<Walker<GeneralFlow>>(process, travel);
-}
-
-NoiseLevels::NoiseLevels(const model::NoiseChain& noise)
-    : lowest_(noise.lowest()), below_(model::stationary_distribution(noise)) {
-  std::partial_sum(below_.begin(), below_.end(), below_.begin());
-}
-
-int NoiseLevels::draw(double uniform) const {
-  const auto found = std::upper_bound(below_.begin(), below_.end() - 1, uniform * below_.back());
-  return lowest_ + static_cast<int>(found - below_.begin());
-}
-
-Path simulate_path(const model::Process& process, const model::Start& start, double horizon,
-                   std::uint64_t seed) {
-  const auto walk = make_walk(process);
-  RandomStream random(seed, kPathStream);
-  if (start.kind == model::Start::Kind::stationary) {
-    begin_stationary(*walk, process, random);
-  } else {
-    walk->begin(random, start);
-  }
-  Path path;
-  const double begun = walk->state().time, end = begun + horizon;
-  const auto record = [&] {
-    const State now = walk->state();
-    path.time.push_back(now.time < end ? now.time - begun : horizon);
-    path.x.push_back(now.x);
-    path.y.push_back(now.y);
-    path.v.push_back(now.v);
-  };
-  for (record(); walk->state().time < end; record()) walk->step(end);
-  return path;
-}
-
-namespace {
-
 /// The noise and the forces in tables over the levels that occur.
 class Levels {
  public:
@@ -437,6 +382,57 @@ class Source final : public PathSource {
 };
 
 }  // namespace
+
+State Walk::advance(double time) {
+  while (state().time < time) step(time);
+  return state();
+}
+
+double Walk::end_excursion() {
+  bool rested = false;
+  for (;; step(kInfinity)) {
+    const State now = state();
+    if (rested && now.y != 0) return now.time;
+    rested = rested || now.y == 0;
+  }
+}
+
+std::unique_ptr<Walk> make_walk(const model::Process& process, bool travel) {
+  if (process.drag.is_linear()) return std::make_unique<Walker<LinearFlow>>(process, travel);
+  return std::make_unique<Walker<GeneralFlow>>(process, travel);
+}
+
+NoiseLevels::NoiseLevels(const model::NoiseChain& noise)
+    : lowest_(noise.lowest()), below_(model::stationary_distribution(noise)) {
+  std::partial_sum(below_.begin(), below_.end(), below_.begin());
+}
+
+int NoiseLevels::draw(double uniform) const {
+  const auto found = std::upper_bound(below_.begin(), below_.end() - 1, uniform * below_.back());
+  return lowest_ + static_cast<int>(found - below_.begin());
+}
+
+Path simulate_path(const model::Process& process, const model::Start& start, double horizon,
+                   std::uint64_t seed) {
+  const auto walk = make_walk(process);
+  RandomStream random(seed, kPathStream);
+  if (start.kind == model::Start::Kind::stationary) {
+    begin_stationary(*walk, process, random);
+  } else {
+    walk->begin(random, start);
+  }
+  Path path;
+  const double begun = walk->state().time, end = begun + horizon;
+  const auto record = [&] {
+    const State now = walk->state();
+    path.time.push_back(now.time < end ? now.time - begun : horizon);
+    path.x.push_back(now.x);
+    path.y.push_back(now.y);
+    path.v.push_back(now.v);
+  };
+  for (record(); walk->state().time < end; record()) walk->step(end);
+  return path;
+}
 
 std::size_t Wanted::observe(const model::Observable& f) {
   const auto found = std::ranges::find(observables, f.name, &model::Observable::name);

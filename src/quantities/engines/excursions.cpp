@@ -61,6 +61,35 @@ double sum_of_products(const ByLevel& a, const ByLevel& b) {
   return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
 }
 
+// Far below what follows one another at all; where discounts leave nothing but rounding, shares
+// have its error.
+std::vector<std::vector<Uncertain>> positive(std::vector<std::vector<Uncertain>> h) {
+  constexpr double least = 1e-30;
+  for (auto& row : h) {
+    for (auto& step : row) {
+      const double value = std::max(step.value, least);
+      step = {value, std::max(step.error, value - step.value)};
+    }
+  }
+  return h;
+}
+
+std::size_t most_reached(const std::vector<std::vector<Uncertain>>& h) {
+  std::vector<double> arrivals(h.size());
+  for (const auto& row : h) {
+    for (std::size_t u = 0; u < h.size(); ++u) arrivals[u] += row[u].value;
+  }
+  return static_cast<std::size_t>(std::ranges::max_element(arrivals) - arrivals.begin());
+}
+
+std::vector<std::size_t> all_but(std::size_t one, std::size_t count) {
+  std::vector<std::size_t> others;
+  for (std::size_t t = 0; t < count; ++t) {
+    if (t != one) others.push_back(t);
+  }
+  return others;
+}
+
 }  // namespace
 
 Uncertain value_of(Vec functional, const linalg::Solution& solution) {
@@ -317,39 +346,6 @@ UntilPassage::Integral UntilPassage::renewed(Integral sum, std::vector<double> k
   return sum;
 }
 
-namespace {
-
-// Far below what follows one another at all; where discounts leave nothing but rounding, shares
-// have its error.
-std::vector<std::vector<Uncertain>> positive(std::vector<std::vector<Uncertain>> h) {
-  constexpr double least = 1e-30;
-  for (auto& row : h) {
-    for (auto& step : row) {
-      const double value = std::max(step.value, least);
-      step = {value, std::max(step.error, value - step.value)};
-    }
-  }
-  return h;
-}
-
-std::size_t most_reached(const std::vector<std::vector<Uncertain>>& h) {
-  std::vector<double> arrivals(h.size());
-  for (const auto& row : h) {
-    for (std::size_t u = 0; u < h.size(); ++u) arrivals[u] += row[u].value;
-  }
-  return static_cast<std::size_t>(std::ranges::max_element(arrivals) - arrivals.begin());
-}
-
-std::vector<std::size_t> all_but(std::size_t one, std::size_t count) {
-  std::vector<std::size_t> others;
-  for (std::size_t t = 0; t < count; ++t) {
-    if (t != one) others.push_back(t);
-  }
-  return others;
-}
-
-}  // namespace
-
 DiscountedStarts::DiscountedStarts(double lambda, std::vector<Uncertain> w,
                                    std::vector<std::vector<Uncertain>> h)
     : lambda_(lambda),
@@ -414,18 +410,13 @@ linalg::RateElimination DiscountedStarts::steps(double lambda) const {
 }
 
 // By start, from values of the others.
-std::vector<double> DiscountedStarts::with_base(const std::vector<double>& values,
-                                                double at_base) const {
-  std::vector<double> all(size(), at_base);
-  for (std::size_t n = 0; n < values.size(); ++n) all[others_[n]] = values[n];
-  return all;
-}
-
 std::vector<Uncertain> DiscountedStarts::with_base(const std::vector<double>& values,
                                                    double at_base,
                                                    const std::vector<double>& errors) const {
   std::vector<Uncertain> all(size(), {at_base, 0});
-  for (std::size_t n = 0; n < values.size(); ++n) all[others_[n]] = {values[n], errors[n]};
+  for (std::size_t n = 0; n < values.size(); ++n) {
+    all[others_[n]] = {values[n], errors.empty() ? 0 : errors[n]};
+  }
   return all;
 }
 
@@ -439,8 +430,10 @@ std::vector<Uncertain> DiscountedStarts::solved(const std::vector<Uncertain>& so
   const auto x = with_base(values, at_base);
   for (std::size_t n = 0; n < others_.size(); ++n) {
     const std::size_t t = others_[n];
-    double error = source[n].error + lambda_ * w_[t].error * std::abs(x[t]);
-    for (std::size_t u = 0; u < size(); ++u) error += h_[t][u].error * std::abs(x[u] - x[t]);
+    double error = source[n].error + lambda_ * w_[t].error * std::abs(x[t].value);
+    for (std::size_t u = 0; u < size(); ++u) {
+      error += h_[t][u].error * std::abs(x[u].value - x[t].value);
+    }
     left.push_back(error);
   }
   return with_base(values, at_base, until_base_.integral(std::move(left)));
@@ -456,7 +449,7 @@ std::vector<Uncertain> DiscountedStarts::shares() const {
   for (std::size_t u : others_) {
     double error = 0;
     for (std::size_t t = 0; t < size(); ++t) {
-      if (t != u) error += p[t] * h_[t][u].error + p[u] * h_[u][t].error;
+      if (t != u) error += p[t].value * h_[t][u].error + p[u].value * h_[u][t].error;
     }
     left.push_back(error);
   }

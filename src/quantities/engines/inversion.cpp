@@ -156,6 +156,16 @@ Complex polynomial(const std::vector<Complex>& terms, double x) {
   return terms[0] + x * one - two;
 }
 
+constexpr double kShorter = 2.0 / 3;
+
+// 1 up to 0.6 and 0 at 1, with all derivatives.
+double window(double x) {
+  constexpr double flat = 0.6;
+  const double u = (x - flat) / (1 - flat);
+  if (u <= 0) return 1;
+  return u >= 1 ? 0 : 1 / (1 + std::exp(1 / (1 - u) - 1 / u));
+}
+
 }  // namespace
 
 FourierInversion::FourierInversion(const Transform& phi, double mass, double mean, double deviation,
@@ -437,20 +447,6 @@ Uncertain FourierInversion::below(double x) const {
   const Uncertain beyond = between(-x, &Integrals::below);
   return {mass_ - beyond.value, beyond.error};
 }
-
-namespace {
-
-constexpr double kShorter = 2.0 / 3;
-
-// 1 up to 0.6 and 0 at 1, with all derivatives.
-double window(double x) {
-  constexpr double flat = 0.6;
-  const double u = (x - flat) / (1 - flat);
-  if (u <= 0) return 1;
-  return u >= 1 ? 0 : 1 / (1 + std::exp(1 / (1 - u) - 1 / u));
-}
-
-}  // namespace
 
 TailInversion::TailInversion(const FourierInversion::Transform& phi, double s, double mean,
                              double deviation, double accuracy, int most)

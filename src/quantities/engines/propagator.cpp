@@ -304,14 +304,6 @@ class Search {
   Complex last_ = 0;
 };
 
-}  // namespace
-
-Answers ask(ReducedModel& model, const Questions& questions, Recipe& recipe) {
-  return Search(model, questions, recipe).run();
-}
-
-namespace {
-
 // Waves that few levels hardly damp lie to the right of a contour beyond some 0.8 points / t. With
 // a Laplace transform that falls as 1/z^2 there, the wide contour loses about what the two differ
 // by; three times that stands for it, as waves come with any phase. Wider ones multiply rounding by
@@ -354,6 +346,10 @@ void add_points(const std::vector<Fold>& folds, const std::vector<double>& time,
 }
 
 }  // namespace
+
+Answers ask(ReducedModel& model, const Questions& questions, Recipe& recipe) {
+  return Search(model, questions, recipe).run();
+}
 
 std::vector<std::vector<Uncertain>>
 evaluate(const Reduced& reduced, const std::vector<double>& time, const std::vector<int>& folds) {

@@ -15,69 +15,6 @@ using linalg::check;
 using linalg::copy_of;
 using linalg::Matrix;
 
-}  // namespace
-
-ProcessPencil::ProcessPencil(generator::Systems& systems, generator::Symmetry symmetry,
-                             generator::StaticPhase static_phase, Clock clock)
-    : systems_(systems),
-      key_{0, symmetry, static_phase, clock},
-      a_(generator::assemble(systems.comm(), systems.discretisation(), 0, symmetry, static_phase,
-                             systems.statistics())) {
-  if (clock == Clock::time) return;
-  const auto root = [&](const generator::State& state) {
-    return std::sqrt(rate_of(clock, state, *systems.discretisation().velocities));
-  };
-  root_ = a_.by_state(root);
-  inverse_root_ = a_.by_state([&](const generator::State& state) { return 1 / root(state); });
-}
-
-ProcessPencil::~ProcessPencil() {
-  for (const auto& key : used_) systems_.release(key);
-}
-
-void ProcessPencil::by_clock(int power, Vec x) const {
-  if (root_ != nullptr) check(VecPointwiseMult(x, x, power > 0 ? root_ : inverse_root_));
-}
-
-void ProcessPencil::multiply(Vec x, Vec y, bool transposed) const {
-  const linalg::VecHandle scaled = linalg::copy_of(x);
-  by_clock(-1, scaled);
-  check(transposed ? MatMultTranspose(a_.matrix(), scaled, y) : MatMult(a_.matrix(), scaled, y));
-  by_clock(-1, y);
-}
-
-void ProcessPencil::solve(double z, Vec b, Vec x, bool transposed, bool refined) {
-  auto key = key_;
-  key.lambda = z;
-  used_.insert(key);
-  auto& factors = systems_.at(key).factors();
-  const linalg::VecHandle scaled = linalg::copy_of(b);
-  by_clock(1, scaled);
-  if (refined) {
-    check(VecCopy(transposed ? factors.solve_transposed(scaled).x : factors.solve(scaled).x, x));
-  } else {
-    factors.solve_once(scaled, x, transposed);
-  }
-  by_clock(1, x);
-}
-
-ShiftedInverse ProcessPencil::shifted(std::complex<double> z) {
-  const auto solver = std::make_shared<generator::ComplexSolver>(
-      a_, generator::Shift<std::complex<double>>(z, key_.clock), systems_.statistics());
-  return [this, solver](const generator::ComplexVector& b, bool transposed) {
-    const auto scale = [this](const generator::ComplexVector& x) {
-      for (Vec part : {Vec(x.real), Vec(x.imaginary)}) by_clock(1, part);
-    };
-    const generator::ComplexVector scaled{copy_of(b.real), copy_of(b.imaginary)};
-    scale(scaled);
-    generator::ComplexVector x = solver->solve(scaled, transposed).x;
-    scale(x);
-    return x;
-  };
-}
-
-namespace {
-
 linalg::BvHandle basis_like(Vec vec, int columns) {
   linalg::BvHandle basis;
   check(BVCreate(PetscObjectComm(reinterpret_cast<PetscObject>(vec)), basis.out()));
@@ -161,6 +98,65 @@ std::vector<double> products(MPI_Comm comm, const Matrix<double>& x, const doubl
 }
 
 }  // namespace
+
+ProcessPencil::ProcessPencil(generator::Systems& systems, generator::Symmetry symmetry,
+                             generator::StaticPhase static_phase, Clock clock)
+    : systems_(systems),
+      key_{0, symmetry, static_phase, clock},
+      a_(generator::assemble(systems.comm(), systems.discretisation(), 0, symmetry, static_phase,
+                             systems.statistics())) {
+  if (clock == Clock::time) return;
+  const auto root = [&](const generator::State& state) {
+    return std::sqrt(rate_of(clock, state, *systems.discretisation().velocities));
+  };
+  root_ = a_.by_state(root);
+  inverse_root_ = a_.by_state([&](const generator::State& state) { return 1 / root(state); });
+}
+
+ProcessPencil::~ProcessPencil() {
+  for (const auto& key : used_) systems_.release(key);
+}
+
+void ProcessPencil::by_clock(int power, Vec x) const {
+  if (root_ != nullptr) check(VecPointwiseMult(x, x, power > 0 ? root_ : inverse_root_));
+}
+
+void ProcessPencil::multiply(Vec x, Vec y, bool transposed) const {
+  const linalg::VecHandle scaled = linalg::copy_of(x);
+  by_clock(-1, scaled);
+  check(transposed ? MatMultTranspose(a_.matrix(), scaled, y) : MatMult(a_.matrix(), scaled, y));
+  by_clock(-1, y);
+}
+
+void ProcessPencil::solve(double z, Vec b, Vec x, bool transposed, bool refined) {
+  auto key = key_;
+  key.lambda = z;
+  used_.insert(key);
+  auto& factors = systems_.at(key).factors();
+  const linalg::VecHandle scaled = linalg::copy_of(b);
+  by_clock(1, scaled);
+  if (refined) {
+    check(VecCopy(transposed ? factors.solve_transposed(scaled).x : factors.solve(scaled).x, x));
+  } else {
+    factors.solve_once(scaled, x, transposed);
+  }
+  by_clock(1, x);
+}
+
+ShiftedInverse ProcessPencil::shifted(std::complex<double> z) {
+  const auto solver = std::make_shared<generator::ComplexSolver>(
+      a_, generator::Shift<std::complex<double>>(z, key_.clock), systems_.statistics());
+  return [this, solver](const generator::ComplexVector& b, bool transposed) {
+    const auto scale = [this](const generator::ComplexVector& x) {
+      for (Vec part : {Vec(x.real), Vec(x.imaginary)}) by_clock(1, part);
+    };
+    const generator::ComplexVector scaled{copy_of(b.real), copy_of(b.imaginary)};
+    scale(scaled);
+    generator::ComplexVector x = solver->solve(scaled, transposed).x;
+    scale(x);
+    return x;
+  };
+}
 
 Residual::Residual(BV basis, BV image, int size, Vec end)
     : t_(size, size), b_v_(products(basis, end, size)) {

@@ -240,10 +240,8 @@ class DiscountedStarts {
   [[nodiscard]] Uncertain sum(const Term& term, std::size_t without = -1) const;
   [[nodiscard]] Uncertain weight() const;
   [[nodiscard]] linalg::RateElimination steps(double lambda) const;
-  [[nodiscard]] std::vector<double> with_base(const std::vector<double>& values,
-                                              double at_base) const;
   [[nodiscard]] std::vector<Uncertain> with_base(const std::vector<double>& values, double at_base,
-                                                 const std::vector<double>& errors) const;
+                                                 const std::vector<double>& errors = {}) const;
   [[nodiscard]] std::vector<Uncertain> solved(const std::vector<Uncertain>& source,
                                               double at_base) const;
   [[nodiscard]] std::vector<Uncertain> shares() const;
