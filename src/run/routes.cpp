@@ -134,54 +134,32 @@ struct Trial {
   double largest_error = 0;     // relative
 };
 
-/// R = (lambda - M)^-1 read at s+.
-class FullGrid {
- public:
-  FullGrid(const Problem& problem, double lambda)
-      : lambda_(lambda),
-        systems_(problem.comm, problem.discretisation, problem.statistics),
-        system_(systems_.at(lambda, Symmetry::none, StaticPhase::kept)),
-        at_exit_(system_.a().trace_at_exit()) {}
-
-  struct Mean {
-    Uncertain value;
-    double bias;
-  };
-  /// c = R f/R 1 at s+ as the root of R(f - c) = 0, see by_lambda.
-  [[nodiscard]] Mean of(const generator::KolmogorovOperator::Observable& f) {
-    const linalg::VecHandle rest = system_.a().values(f);
+// R = (lambda - M)^-1 read at s+ of all averages.
+Trial average_at(const Problem& problem, double lambda) {
+  generator::Systems systems(problem.comm, problem.discretisation, problem.statistics);
+  auto& system = systems.at(lambda, Symmetry::none, StaticPhase::kept);
+  const linalg::VecHandle at_exit = system.a().trace_at_exit();
+  Trial trial;
+  trial.lambda = lambda;
+  std::vector<Uncertain> values;
+  for (const auto& average : averages(problem)) {
+    // c = R f/R 1 at s+ as the root of R(f - c) = 0, see by_lambda.
+    const linalg::VecHandle rest = system.a().values(average.f);
     double c = 0, last = 0;
     linalg::Solution u;
     Uncertain step;
     for (int n = 0; n < kMostSolves; ++n) {
       check(VecShift(rest, -last));
-      u = system_.factors().solve(rest);
-      step = lambda_ * quantities::value_of(at_exit_, u);
+      u = system.factors().solve(rest);
+      step = lambda * quantities::value_of(at_exit, u);
       c += step.value;
       if (std::abs(step.value) <= 1e-15 * std::abs(c)) break;
       last = step.value;
     }
-    const linalg::Solution twice = system_.factors().solve(u.x);
-    const double bias = lambda_ * lambda_ * quantities::value_of(at_exit_, twice).value;
-    return {{c, std::abs(step.value) + step.error + std::abs(bias)}, std::abs(bias)};
-  }
-
- private:
-  double lambda_;
-  generator::Systems systems_;
-  generator::System& system_;
-  linalg::VecHandle at_exit_;
-};
-
-Trial average_at(const Problem& problem, double lambda) {
-  FullGrid grid(problem, lambda);
-  Trial trial;
-  trial.lambda = lambda;
-  std::vector<Uncertain> values;
-  for (const auto& average : averages(problem)) {
-    const auto mean = grid.of(average.f);
-    values.push_back(mean.value);
-    trial.largest_bias = std::max(trial.largest_bias, mean.bias / std::abs(mean.value.value));
+    const linalg::Solution twice = system.factors().solve(u.x);
+    const double bias = std::abs(lambda * lambda * quantities::value_of(at_exit, twice).value);
+    values.push_back({c, std::abs(step.value) + step.error + bias});
+    trial.largest_bias = std::max(trial.largest_bias, bias / std::abs(c));
   }
   append_averages(problem, values, trial.results);
   for (const auto& result : trial.results) {
@@ -190,52 +168,40 @@ Trial average_at(const Problem& problem, double lambda) {
   return trial;
 }
 
-/// The best lambda, by its whole error. The bias is proportional to lambda, while rounding grows
-/// steeply as lambda falls: goes down by what the bias asks for, and where that was too far, by
-/// geometric means between the best lambda and its neighbours.
-class Search {
- public:
-  explicit Search(const Problem& problem) : problem_(problem) {}
-
-  Trial run() {
-    const double tau = problem_.discretisation.process.noise.correlation_time(),
-                 wanted = 0.25 * problem_.given.question.accuracy;
-    best_ = average_at(problem_, std::max(0.01 * problem_.given.question.accuracy, kSafe) / tau);
-    for (int n = 1, means = 0; n < kMostTrials && means < kMostMeans; ++n) {
-      const double ratio = best_.largest_bias / wanted;
-      if (ratio <= 1) break;
-      if (smaller_ > 0) {
-        try_lambda(std::sqrt(best_.lambda * (rounding_rules() ? larger_.lambda : smaller_)));
-        ++means;
-      } else {
-        try_lambda(std::max(best_.lambda / (2 * ratio), kSmallest / tau));
-      }
-    }
-    return std::move(best_);
-  }
-
- private:
-  // Whether the bias at the best lambda is not the one that larger lambdas let expect.
-  [[nodiscard]] bool rounding_rules() const {
-    if (larger_.lambda == 0) return false;
-    return best_.largest_bias > 3 * larger_.largest_bias * best_.lambda / larger_.lambda;
-  }
-
-  void try_lambda(double lambda) {
-    Trial trial = average_at(problem_, lambda);
-    const bool better = trial.largest_error < best_.largest_error;
-    if (better) std::swap(trial, best_);
-    if (trial.lambda < best_.lambda) {
-      smaller_ = trial.lambda;
+// The best lambda, by its whole error. The bias is proportional to lambda, while rounding grows
+// steeply as lambda falls: goes down by what the bias asks for, and where that was too far, by
+// geometric means between the best lambda and its neighbours.
+Trial best_average(const Problem& problem) {
+  const double tau = problem.discretisation.process.noise.correlation_time(),
+               accuracy = problem.given.question.accuracy;
+  Trial best = average_at(problem, std::max(0.01 * accuracy, kSafe) / tau);
+  Trial larger;        // the next larger one tried, no lambda if there is none
+  double smaller = 0;  // the next smaller one, 0 if there is none
+  const auto try_lambda = [&](double lambda) {
+    Trial trial = average_at(problem, lambda);
+    if (trial.largest_error < best.largest_error) std::swap(trial, best);
+    if (trial.lambda < best.lambda) {
+      smaller = trial.lambda;
     } else {
-      larger_ = std::move(trial);
+      larger = std::move(trial);
     }
+  };
+  for (int n = 1, means = 0; n < kMostTrials && means < kMostMeans; ++n) {
+    const double ratio = best.largest_bias / (0.25 * accuracy);
+    if (ratio <= 1) break;
+    if (smaller == 0) {
+      try_lambda(std::max(best.lambda / (2 * ratio), kSmallest / tau));
+      continue;
+    }
+    // Whether the bias at the best lambda is not the one that larger lambdas let expect.
+    const bool rounding_rules =
+        larger.lambda > 0 &&
+        best.largest_bias > 3 * larger.largest_bias * best.lambda / larger.lambda;
+    try_lambda(std::sqrt(best.lambda * (rounding_rules ? larger.lambda : smaller)));
+    ++means;
   }
-
-  const Problem& problem_;
-  Trial best_, larger_;  // the next larger one tried, no lambda if there is none
-  double smaller_ = 0;   // the next smaller one, 0 if there is none
-};
+  return best;
+}
 
 // pi(f) = lambda u_lambda(s+; f) + O(lambda) with (lambda - M) u_lambda = f on the full grid; one
 // factorisation for all f.
@@ -249,7 +215,7 @@ class Search {
 // accuracy, or as far as rounding lets the whole error fall.
 Evaluation by_lambda(const Problem& problem) {
   const auto& fixed = problem.given.question.lambda;
-  Trial best = fixed.empty() ? Search(problem).run() : average_at(problem, fixed[0]);
+  Trial best = fixed.empty() ? best_average(problem) : average_at(problem, fixed[0]);
   Evaluation evaluation;
   evaluation.results = std::move(best.results);
   evaluation.checks = {{"lambda", best.lambda, "averages are lambda u_lambda(s+) at this rate"},
@@ -348,16 +314,10 @@ Evaluation by_hitting(const Problem& problem) {
 constexpr const char* kNullPrefix = "null_";
 
 // Smallest entry, 0 if none is negative; on an upwind grid pi is a probability.
-double most_negative(MPI_Comm comm, Vec pi) {
-  double smallest = 0;
-  {
-    const linalg::ReadView local(pi);
-    for (PetscInt n = 0; n < local.size(); ++n) {
-      smallest = std::min(smallest, static_cast<double>(PetscRealPart(local[n])));
-    }
-  }
-  MPI_Allreduce(MPI_IN_PLACE, &smallest, 1, MPI_DOUBLE, MPI_MIN, comm);
-  return smallest;
+double most_negative(Vec pi) {
+  PetscReal smallest = 0;
+  check(VecMin(pi, nullptr, &smallest));
+  return std::min(smallest, 0.0);
 }
 
 // ||pi M||_1 / max row sum of |M|.
@@ -422,7 +382,6 @@ Evaluation by_null_vector(const Problem& problem) {
         quantities::changed_from(integral(a, before, average.f), integral(a, pi, average.f)));
   }
   append_averages(problem, values, evaluation.results);
-  using cases::Quantity;
   const auto& question = problem.given.question;
   if (question.wants(Quantity::sticking) || question.wants(Quantity::averages)) {
     const Uncertain excursion = mean_excursion(problem, a, pi, before);
@@ -431,24 +390,19 @@ Evaluation by_null_vector(const Problem& problem) {
       evaluation.results.push_back(scalar(cases::kSlipRate, Uncertain{1, 0} / excursion));
     }
   }
-  evaluation.checks = {
-      {"norm_pi_M_over_norm_M", relative_residual(transposed, pi),
-       "residual of the null vector pi of the generator M"},
-      {"most_negative_pi", most_negative(problem.comm, pi), "smallest entry of pi"}};
+  evaluation.checks = {{"norm_pi_M_over_norm_M", relative_residual(transposed, pi),
+                        "residual of the null vector pi of the generator M"},
+                       {"most_negative_pi", most_negative(pi), "smallest entry of pi"}};
   return evaluation;
 }
 
-struct Computation {
-  Route route;
-  Evaluation (*evaluate)(const Problem&);
-};
-
 // All methods that have a discretisation.
-constexpr Computation kComputations[] = {{Route::excursion, by_excursion},
-                                         {Route::lambda, by_lambda},
-                                         {Route::hitting, by_hitting},
-                                         {Route::null_vector, by_null_vector},
-                                         {Route::fluid_queue, by_fluid_queue}};
+constexpr std::pair<Route, Evaluation (*)(const Problem&)> kComputations[] = {
+    {Route::excursion, by_excursion},
+    {Route::lambda, by_lambda},
+    {Route::hitting, by_hitting},
+    {Route::null_vector, by_null_vector},
+    {Route::fluid_queue, by_fluid_queue}};
 
 }  // namespace
 
