@@ -327,37 +327,21 @@ Layers partings(const model::Process& process, const MeshRule& rule, bool on_bot
   return found;
 }
 
-/// decay_rate(). Without weights, beyond the speeds that bodies reach on both velocity branches
-/// that of the branch on which they do, where the next element may end.
-class DecayRate {
- public:
-  DecayRate(const model::Process& process, const MeshRule& rule)
-      : process_(process),
-        ratio_(rule.ratio()),
-        tilt_(rule.rates.tilt),
-        upper_(process, rule.v_max),
-        lower_(process.mirrored(), rule.v_max) {}
-
-  [[nodiscard]] double operator()(double v) const {
-    constexpr double nothing = -45;  // below all rounding
-    const double both = decay_rate(process_, v, tilt_), up = upper_(v), down = lower_(v);
-    if (tilt_ > 0) return both;
-    if (std::max(up, down) < nothing || std::min(up, down) > nothing) return both;
-    const LogDensity& counts = up > down ? upper_ : lower_;
-    const double own = std::abs(counts.slope - counts.drag(v / ratio_));
-    return std::min(both, own / process_.noise.intensity());
-  }
-
- private:
-  const model::Process& process_;
-  double ratio_;
-  double tilt_;
-  LogDensity upper_, lower_;
-};
-
 // Without regard to what the drag and the integrands are like.
 std::vector<double> regular_ends(const model::Process& process, const MeshRule& rule) {
-  const DecayRate rate(process, rule);
+  const double tilt = rule.rates.tilt;
+  const LogDensity upper(process, rule.v_max), lower(process.mirrored(), rule.v_max);
+  // decay_rate(). Without weights, beyond the speeds that bodies reach on both velocity branches
+  // that of the branch on which they do, where the next element may end.
+  const auto rate = [&](double v) {
+    constexpr double nothing = -45;  // below all rounding
+    const double both = decay_rate(process, v, tilt), up = upper(v), down = lower(v);
+    if (tilt > 0) return both;
+    if (std::max(up, down) < nothing || std::min(up, down) > nothing) return both;
+    const LogDensity& counts = up > down ? upper : lower;
+    const double own = std::abs(counts.slope - counts.drag(v / rule.ratio()));
+    return std::min(both, own / process.noise.intensity());
+  };
   const int layers = rule.layers > 0 ? rule.layers : natural_layers(process, rule);
   const double graded = graded_end(process, rule);
   std::vector<double> ends{0};
