@@ -249,8 +249,9 @@ namespace {
 
 // What MUMPS is asked for (ICNTL(7)); left to itself it takes AMF too for small matrices.
 PetscInt ordering_asked(Mat a, const std::string& prefix) {
-  KspHandle ksp = linear_solver(a, prefix, PCLU);
-  factor(ksp, a, prefix);
+  const KspHandle ksp = linear_solver(a, prefix, PCLU);
+  const auto ordering = default_ordering(prefix);
+  check(KSPSetUp(ksp));
   PC pc = nullptr;
   Mat factors = nullptr;
   PetscInt asked = -1;
