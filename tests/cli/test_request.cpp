@@ -563,8 +563,11 @@ TEST_CASE("options files: unreadable files and lines are reported with their pla
     CHECK_THROWS_WITH(check_options_files({"-options_file", name}),
                       Catch::Contains(name + ":2") && Catch::Contains("put a blank before it"));
   }
-  std::ofstream(name) << "-drag_expression \" -v - v^3\"\n-start -1,0\n-observable \"\n";
+  std::ofstream(name) << "-drag_expression \" -v - v^3\"\n-start -1,0\n";
   CHECK_NOTHROW(check_options_files({"-options_file", name}));
+  std::ofstream(name) << "-mu_s 1\n-observable \"\n";
+  CHECK_THROWS_WITH(check_options_files({"-options_file", name}),
+                    Catch::Contains(name + ":2") && Catch::Contains("not closed"));
   std::ofstream(name) << "-mu_s 1\n";
   CHECK_NOTHROW(check_options_files({"-options_file", name}));
   std::remove(name.c_str());
