@@ -263,7 +263,7 @@ std::vector<double> shared_abscissa(const std::vector<std::vector<double>>& at) 
 std::string inner_axis(Grid& grid, const std::string& name, const std::vector<double>& numbers) {
   if (numbers.empty()) return "";
   for (int n = 1;; ++n) {
-    const std::string own = n == 1 ? name : fmt::format("{}_{}", name, n);
+    std::string own = n == 1 ? name : fmt::format("{}_{}", name, n);
     const auto found = std::ranges::find(grid.arrays, own, &Array::name);
     if (found == grid.arrays.end()) {
       grid.arrays.push_back({own, {numbers.size()}, numbers, {}, {own}});

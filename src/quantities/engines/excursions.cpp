@@ -151,7 +151,7 @@ StationaryDistribution::StationaryDistribution(Systems& systems)
       each.push_back(excursion_of(a, nu.*which, lost));
     }
     const bool several = rests && !symmetric;
-    const Starts starts = several ? chain_of_starts(process(), levels, each) : upwards;
+    Starts starts = several ? chain_of_starts(process(), levels, each) : upwards;
     excursion = several ? joined(process(), starts, each) : each[0];
     occupation = a.zeros();
     for (std::size_t t = 0; t < occupations.size(); ++t) {
