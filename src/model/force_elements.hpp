@@ -79,8 +79,8 @@ struct AlongForce {
   AlongForce(const ForceMesh& mesh, const std::vector<double>& at, Weight weight);
   [[nodiscard]] static int nodes_of(const ForceMesh& mesh, const std::vector<double>& cuts);
   /// By node the mean of f under what the node stands for: its function times the weight. Sums over
-  /// nodes of such means are integrals of f whether or not f is smooth. Adaptive: some 30 values of
-  /// f on each element, 600 beside a jump.
+  /// nodes of such means are integrals of f whether or not f is smooth. Adaptive: some 200
+  /// values of f on each element, 600 more beside a jump.
   [[nodiscard]] std::vector<double> means(const FunctionOfNoise& f) const;
   /// The element that holds a force within the mesh.
   [[nodiscard]] const std::pair<int, ForceElement>& element_at(double z) const;
