@@ -70,26 +70,26 @@ void write_field(Hdf5File& file, const std::string& group, const std::string& na
   const std::string path = group + "/" + name;
   file.write_rows(path, field.x().size(), field.v().size(), field.local_levels(),
                   field.local_rows());
-  file.attach(path, {group + "/x", group + "/v"});
+  file.set_axes(path, {group + "/x", group + "/v"});
 }
 
-void write_axis(Hdf5File& file, const std::string& path, std::span<const double> values) {
+void write_over(Hdf5File& file, const std::string& path, const std::string& axis,
+                std::span<const double> values) {
   file.write_array(path, values);
-  file.make_scale(path);
+  file.set_axes(path, {axis});
 }
 
 void write_axes(Hdf5File& file, const std::string& group, const quantities::PhaseField& field) {
   file.make_group(group);
-  write_axis(file, group + "/x", field.x());
-  write_axis(file, group + "/v", field.v());
+  write_over(file, group + "/x", group + "/x", field.x());
+  write_over(file, group + "/v", group + "/v", field.v());
 }
 
 void write_density(Hdf5File& file, const quantities::DensityField& field, double error) {
   const auto write = [&file](const std::string& name, const auto& values, const std::string& axis,
                              const char* meaning) {
     const std::string path = "/density/" + name;
-    file.write_array(path, values);
-    axis == name ? file.make_scale(path) : file.attach(path, {"/density/" + axis});
+    write_over(file, path, "/density/" + axis, values);
     file.attribute(path, "meaning", meaning);
   };
   write_axes(file, "/density", field.pdf);
@@ -115,7 +115,7 @@ void write_density(Hdf5File& file, const quantities::DensityField& field, double
     std::vector<std::size_t> rows(pdf.size() / field.pdf.v().size());
     std::iota(rows.begin(), rows.end(), std::size_t{0});
     file.write_rows("/density/position/pdf", p.size(), field.pdf.v().size(), rows, pdf);
-    file.attach("/density/position/pdf", {"/density/position/p", "/density/v"});
+    file.set_axes("/density/position/pdf", {"/density/position/p", "/density/v"});
     file.attribute("/density/position/pdf", "meaning",
                    "P(P in the step around p_i, V in dv)/dv by rows of p and columns of v");
   }
@@ -127,14 +127,11 @@ void write_path(Hdf5File& file, const simulation::Path& path) {
   file.make_group("/trajectory");
   file.attribute("/trajectory", "meaning",
                  "state just after each event; between events x and y stay and v follows the flow");
-  write_axis(file, "/trajectory/time", path.time);
-  const auto write = [&file](const std::string& name, std::span<const double> values) {
-    file.write_array("/trajectory/" + name, values);
-    file.attach("/trajectory/" + name, {"/trajectory/time"});
-  };
-  write("x", path.x);
-  write("y", path.y);
-  write("v", path.v);
+  const std::string time = "/trajectory/time";
+  write_over(file, time, time, path.time);
+  write_over(file, "/trajectory/x", time, path.x);
+  write_over(file, "/trajectory/y", time, path.y);
+  write_over(file, "/trajectory/v", time, path.v);
 }
 
 void write_modes(Hdf5File& file, const quantities::RelaxationSector& sector) {
@@ -203,12 +200,7 @@ void write_tree(Hdf5File& file, const std::string& group, const Json& tree) {
   const auto write = [&](const std::string& name, const Json& value) {
     const std::string path = group + "/" + hdf5_name(name);
     if (!value.is_array()) return file.write_scalar(path, value.get<double>());
-    file.write_array(path, value.get<std::vector<double>>());
-    if (path == axis) {
-      file.make_scale(path);
-    } else {
-      file.attach(path, {axis});
-    }
+    write_over(file, path, axis, value.get<std::vector<double>>());
   };
   file.make_group(group);
   for (const auto& [name, value] : tree.items()) {
@@ -268,11 +260,7 @@ void write_grid(Hdf5File& file, const Grid& grid) {
     for (const auto& axis : array.axes) {
       axes.push_back(axis.empty() ? "" : "/sweep/" + hdf5_name(axis));
     }
-    if (axes == std::vector{path}) {
-      file.make_scale(path);
-    } else {
-      file.attach(path, axes);
-    }
+    file.set_axes(path, axes);
     for (const auto& [name, text] : array.notes) file.attribute(path, name, text);
   }
 }
@@ -381,13 +369,11 @@ void Hdf5File::write_rows(const std::string& path, std::size_t row_count, std::s
   }
 }
 
-void Hdf5File::make_scale(const std::string& path) {
-  const Hdf5Id scale = given(H5Dopen2(id_, path.c_str(), H5P_DEFAULT), H5Dclose, path);
-  require(H5DSset_scale(scale, path.substr(path.rfind('/') + 1).c_str()), path);
-}
-
-void Hdf5File::attach(const std::string& path, const std::vector<std::string>& axes) {
+void Hdf5File::set_axes(const std::string& path, const std::vector<std::string>& axes) {
   const Hdf5Id data = given(H5Dopen2(id_, path.c_str(), H5P_DEFAULT), H5Dclose, path);
+  if (axes == std::vector{path}) {
+    return require(H5DSset_scale(data, path.substr(path.rfind('/') + 1).c_str()), path);
+  }
   for (unsigned n = 0; n < axes.size(); ++n) {
     if (axes[n].empty()) continue;
     const Hdf5Id scale = given(H5Dopen2(id_, axes[n].c_str(), H5P_DEFAULT), H5Dclose, axes[n]);

@@ -248,10 +248,7 @@ std::vector<std::vector<std::string>> rows_of(const Request& request,
 // What a result is over at each point, if that is the same at all of them, or its beginning where a
 // point has less of it, as fewer slips; else nothing.
 std::vector<double> shared_abscissa(const std::vector<std::vector<double>>& at) {
-  std::vector<double> longest;
-  for (const auto& numbers : at)
-    longest = std::max(longest, numbers,
-                       [](const auto& a, const auto& b) { return a.size() < b.size(); });
+  const auto& longest = *std::ranges::max_element(at, {}, &std::vector<double>::size);
   const bool shared = std::ranges::all_of(at, [&](const auto& numbers) {
     return std::equal(numbers.begin(), numbers.end(), longest.begin());
   });

@@ -58,10 +58,9 @@ class Hdf5File {
   /// A matrix of which this rank holds whole rows: values row after row, in the order of `rows`.
   void write_rows(const std::string& path, std::size_t row_count, std::size_t columns,
                   std::span<const std::size_t> rows, std::span<const double> values);
-  /// Makes a dataset a dimension scale, by which xarray, netCDF and MATLAB name and label an index.
-  void make_scale(const std::string& path);
-  /// The scale of each index of a dataset; empty where an index has none.
-  void attach(const std::string& path, const std::vector<std::string>& axes);
+  /// The dimension scale of each index of a dataset, by which xarray, netCDF and MATLAB name and
+  /// label it; empty where an index has none. A dataset that is its own axis becomes a scale.
+  void set_axes(const std::string& path, const std::vector<std::string>& axes);
   void attribute(const std::string& path, const std::string& name, const std::string& value);
   void attribute(const std::string& path, const std::string& name, double value);
 
