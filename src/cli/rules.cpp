@@ -117,10 +117,11 @@ class Rules {
     if (r_.scene.projector() == nullptr || !settings_.sound()) return;
     const std::string option =
         r_.scene.spring ? "-spring_stiffness" : "-noise " + r_.scene.noise.name;
+    const auto knows_delta = [](const auto* effect) { return effect->knows("delta"); };
     std::string way = "take a chain, which lattice(delta) of such a noise makes in Python";
     if (r_.scene.spring) {
       way = "leave -spring_stiffness out";
-    } else if (effects::noises().all_know(r_.scene, "delta")) {
+    } else if (std::ranges::all_of(effects::noises().all_in(r_.scene), knows_delta)) {
       way = fmt::format("give -delta, such as {:.3g}, for levels", r_.scene.delta);
     }
     const std::string why = "needs a noise of levels alone, which " + option + " has not";

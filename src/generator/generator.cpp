@@ -293,10 +293,11 @@ linalg::VecHandle KolmogorovOperator::square_field(Vec u, const std::vector<doub
 linalg::VecHandle KolmogorovOperator::values(const Observable& f, bool averaged) const {
   const model::NoiseChain& chain = discretisation().process.noise;
   std::map<std::pair<double, double>, std::vector<double>> means;  // by y and v
+  const bool by_means = averaged && chain.has_means();
   const auto value = [&](int i, double y, double v) {
-    if (!averaged) return f(chain.noise(i), y, v);
+    if (!by_means) return f(chain.noise(i), y, v);
     auto& known = means[{y, v}];
-    if (known.empty()) known = chain.means([&](double x) { return f(x, y, v); });
+    if (known.empty()) known = chain.values([&](double x) { return f(x, y, v); }, averaged);
     return known[i - chain.lowest()];
   };
   return by_state([&](const State& s) {

@@ -417,6 +417,13 @@ double NoiseChain::place(double x) const {
   return rise > 0 ? below + (x - level(below)) / rise * (above - below) : below;
 }
 
+std::vector<double> NoiseChain::values(const FunctionOfNoise& f, bool averaged) const {
+  if (averaged && has_means()) return table->means()(f);
+  std::vector<double> values;
+  for (int i = lowest(); i <= highest(); ++i) values.push_back(f(noise(i)));
+  return values;
+}
+
 NoiseChain NoiseChain::mirrored() const {
   NoiseChain other = *this;
   if (table) other.table = std::make_shared<const LevelTable>(table->mirrored());

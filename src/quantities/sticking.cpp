@@ -111,19 +111,18 @@ Integral integral(const StationaryDistribution& distribution, double defect,
   Integral sum;
   const auto &now = distribution.excursion().stick_time,
              &before = distribution.uncorrected().stick_time;
-  const auto means = f.formula ? process.noise.means([&](double x) { return part(x, 0, 0); })
-                               : std::vector<double>{};
+  const bool averaged = f.formula != nullptr;
+  const auto values = process.noise.values([&](double x) { return part(x, 0, 0); }, averaged);
   double change = 0, size = 0;
   for (std::size_t n = 0; n < now.size(); ++n) {
     const int level = process.lowest_static() + static_cast<int>(n);
-    const double at_rest =
-        f.formula ? means[level - process.noise.lowest()] : part(process.noise.noise(level), 0, 0);
+    const double at_rest = values[level - process.noise.lowest()];
     sum.stick.value += now[n] * at_rest;
     change += (now[n] - before[n]) * at_rest;
     size += now[n] * std::abs(at_rest);
   }
   sum.stick.error = std::abs(change) + defect * size;
-  const linalg::VecHandle sliding = a.values(part, f.formula != nullptr), product = a.zeros();
+  const linalg::VecHandle sliding = a.values(part, averaged), product = a.zeros();
   linalg::check(VecPointwiseMult(product, sliding, distribution.occupation()));
   PetscReal sliding_size = 0;
   linalg::check(VecNorm(product, NORM_1, &sliding_size));

@@ -184,8 +184,9 @@ struct Choice {
   [[nodiscard]] std::vector<std::string> parts(const std::string& word) const;
   /// Whether the effect of the scene, or one of those of which it is the sum, knows the option.
   [[nodiscard]] bool knows(const model::Scene& scene, std::string_view name) const;
-  [[nodiscard]] bool all_know(const model::Scene& scene, std::string_view name) const;
   [[nodiscard]] const Effect& in(const model::Scene& scene) const { return of(word_in(scene)); }
+  /// The effect of the scene, or those of which it is the sum.
+  [[nodiscard]] std::vector<const Effect*> all_in(const model::Scene& scene) const;
 };
 
 /// -friction, -noise and -drag.

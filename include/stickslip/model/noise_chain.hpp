@@ -65,6 +65,9 @@ struct Shown {
 
 using FunctionOfNoise = std::function<double(double noise)>;
 
+/// The means of a function of the noise under what each node stands for, by place.
+using Means = std::function<std::vector<double>(const FunctionOfNoise& f)>;
+
 /// Nodes that stand for a noise of continuous paths, or for a noise and the position of a body on
 /// a spring. Rates between them may have any sign.
 struct Projection {
@@ -82,8 +85,7 @@ struct Projection {
   bool even = false, reversed = false;       ///< as LevelTable has them
   bool continuous = true;                    ///< whether the paths of the noise are
   Shown shown = {}, by_position = {};
-  /// The means of a function of the noise under what each node stands for.
-  std::function<std::vector<double>(const FunctionOfNoise&)> means = {};
+  Means means = {};
 };
 
 /// Forces at which functions of the noise are not smooth: where bodies at rest start to move, and
@@ -190,14 +192,8 @@ class LevelTable {
   [[nodiscard]] double noise(int i) const {
     return has_positions() ? noise_[static_cast<std::size_t>(i - lowest_)] : at(i).x;
   }
-  /// f of the noise on all levels, by place; of nodes its means under what they stand for, so that
-  /// f need not be smooth.
-  [[nodiscard]] std::vector<double> means(const FunctionOfNoise& f) const {
-    if (means_) return means_(f);
-    std::vector<double> all;
-    for (int i = lowest(); i <= highest(); ++i) all.push_back(f(noise(i)));
-    return all;
-  }
+  /// Means under what nodes stand for; empty for levels.
+  [[nodiscard]] const Means& means() const { return means_; }
   /// Probability of level i against that of level i - 1.
   [[nodiscard]] double weight_ratio(int i) const {
     if (neighbours_only()) return at(i - 1).up / at(i).down;
@@ -264,7 +260,7 @@ class LevelTable {
   bool even_ = true, reversed_ = true;
   bool projected_ = false, continuous_ = false;
   std::shared_ptr<const Shown> shown_, by_position_;
-  decltype(Projection::means) means_;
+  Means means_;
   std::vector<std::vector<Jump>> upwards_, downwards_;  // by place, per distance
   std::vector<double> position_, noise_;
 };
@@ -320,12 +316,11 @@ struct NoiseChain {
   [[nodiscard]] double position(int i) const { return table->position(i); }
   /// The noise alone, without a spring.
   [[nodiscard]] double noise(int i) const { return table ? table->noise(i) : i * delta; }
-  [[nodiscard]] std::vector<double> means(const FunctionOfNoise& f) const {
-    if (table) return table->means(f);
-    std::vector<double> all;
-    for (int i = lowest(); i <= highest(); ++i) all.push_back(f(noise(i)));
-    return all;
-  }
+  /// Whether there are means under what nodes stand for.
+  [[nodiscard]] bool has_means() const { return table && table->means(); }
+  /// f of the noise on all levels, by place; `averaged`, of nodes its means under what they stand
+  /// for, so that f need not be smooth.
+  [[nodiscard]] std::vector<double> values(const FunctionOfNoise& f, bool averaged) const;
   /// Calls visit(level, rate per distance) for what a motion upwards changes.
   template <class Visit>
   void for_each_carried(int i, Visit visit) const {

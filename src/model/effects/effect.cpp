@@ -56,16 +56,15 @@ std::vector<std::string> Choice::parts(const std::string& word) const {
   return sum != nullptr ? split(word, '+') : std::vector{word};
 }
 
-bool Choice::knows(const model::Scene& scene, std::string_view name) const {
-  const auto words = parts(word_in(scene));
-  return std::any_of(words.begin(), words.end(),
-                     [&](const std::string& word) { return of(word).knows(name); });
+std::vector<const Effect*> Choice::all_in(const model::Scene& scene) const {
+  std::vector<const Effect*> all;
+  for (const auto& word : parts(word_in(scene))) all.push_back(&of(word));
+  return all;
 }
 
-bool Choice::all_know(const model::Scene& scene, std::string_view name) const {
-  const auto words = parts(word_in(scene));
-  return std::all_of(words.begin(), words.end(),
-                     [&](const std::string& word) { return of(word).knows(name); });
+bool Choice::knows(const model::Scene& scene, std::string_view name) const {
+  return std::ranges::any_of(all_in(scene),
+                             [&](const auto* effect) { return effect->knows(name); });
 }
 
 const Choice& frictions() {
@@ -153,8 +152,8 @@ model::Parameters parameters_of(const model::Scene& s) {
     if (!known) all.emplace_back(name, value);
   };
   const auto add_values = [&](const Choice& choice) {
-    for (const auto& word : choice.parts(choice.word_in(s))) {
-      for (const auto& [name, value] : values_in(choice.of(word), s)) add(name, value);
+    for (const auto* effect : choice.all_in(s)) {
+      for (const auto& [name, value] : values_in(*effect, s)) add(name, value);
     }
   };
   const auto add_word = [&](const Choice& choice) {

@@ -309,8 +309,7 @@ void read_sum(Given& given, model::Scene& scene) {
   if (continuous.size() == words.size()) {
     return make_continuous(given, scene, terms, "noise", "take fewer parts");
   }
-  const bool by_steps =
-      std::ranges::any_of(words, [](const auto& word) { return noises().of(word).knows(kDelta); });
+  const bool by_steps = noises().knows(scene, kDelta);
   for (const auto& word : continuous) {
     given.refuse("noise", fmt::format("adds chains, and {} noise is none", word),
                  by_steps ? "give -delta 0, with which ou is Gaussian noise as well"
