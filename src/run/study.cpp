@@ -105,9 +105,12 @@ Uncertain through(Samples samples, double first_power, double step) {
 }
 
 // Through as many of the last samples as make the error smallest. It compares with the limit
-// without the last sample and, if `shorter`, with the one of a power less.
+// without the last sample and, if `shorter`, with the one of a power less. Where errors of two
+// signs cross, a change is small by chance, and the smallest of all is chosen: up to three times
+// itself it counts as much as the change of a power less.
 Uncertain best_through(Samples samples, double first_power, double step, bool shorter) {
   Uncertain best{kNone, kNone};
+  double before = 0;
   for (std::size_t n = 2; n < samples.size(); ++n) {
     const Uncertain now = through(samples.last(n), first_power, step);
     const auto distance = [&](Samples others) {
@@ -115,7 +118,9 @@ Uncertain best_through(Samples samples, double first_power, double step, bool sh
     };
     double change = distance(samples.last(n + 1).first(n));
     if (shorter) change = std::max(change, distance(samples.last(n - 1)));
-    if (!(change + now.error >= best.error)) best = {now.value, change + now.error};
+    const double error = std::max(change, std::min(3 * change, before)) + now.error;
+    if (!(error >= best.error)) best = {now.value, error};
+    before = change;
   }
   return best;
 }
