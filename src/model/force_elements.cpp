@@ -96,17 +96,22 @@ std::vector<SpecialForce> special_forces(const Thresholds& thresholds, double sc
 
 namespace {
 
-// What spans more than a factor of eight in the distance to a special point is split there, what is
-// long is cut into equal parts.
+// Towards a special point elements shrink by one factor, of about six, that ends at its size. So
+// the smallest shrinks from each order to the next, and changes show its error. What spans more
+// than a factor of eight in the distance to a special point is split there, what is long is cut
+// into equal parts.
 void split_element(const std::vector<SpecialForce>& special, double low, double high,
                    double longest, std::vector<double>& ends) {
-  constexpr double ratio = 6, most = 8, enough = 1.5;
+  constexpr double usual = 6, most = 8, enough = 1.5;
   const double length = high - low;
   int graded = 0;
   double at = 0;
   for (const auto& s : special) {
     if ((s.z != low && s.z != high) || length <= enough * s.size) continue;
     ++graded;
+    const double shrinks = std::log(length / s.size),
+                 steps = std::max(1.0, std::round(shrinks / std::log(usual))),
+                 ratio = std::exp(shrinks / steps);
     at = s.z == low ? low + length / ratio : high - length / ratio;
   }
   if (graded > 1) at = (low + high) / 2;
@@ -144,17 +149,16 @@ ForceMesh force_mesh(const std::vector<SpecialForce>& special, double reach, dou
     if (points[n] > points[n - 1])
       split_element(special, points[n - 1], points[n], longest, mesh.ends);
   }
-  // What is short beside a balance point needs few digits.
-  constexpr int least = 3;
+  // What is short beside a balance point needs few digits. By distances, and not by their numbers,
+  // elements gain a degree at one order or another, and never all at once.
+  constexpr double least = 3, rise = 3.3;  // a degree for each such factor in the distance
   const int count = static_cast<int>(mesh.ends.size()) - 1;
   mesh.degrees.assign(static_cast<std::size_t>(count), degree);
   for (const auto& s : special) {
-    if (!s.balance) continue;
-    const auto found = std::lower_bound(mesh.ends.begin(), mesh.ends.end(), s.z);
-    const int at = static_cast<int>(found - mesh.ends.begin());
-    for (int e = 0; e < count; ++e) {
-      const int apart = e >= at ? e - at : at - 1 - e;
-      mesh.degrees[e] = std::min(mesh.degrees[e], std::max(std::min(least, degree), least + apart));
+    for (int e = 0; e < count && s.balance; ++e) {
+      const double far = std::max(std::abs(mesh.ends[e] - s.z), std::abs(mesh.ends[e + 1] - s.z)),
+                   enough = least + std::max(0.0, std::log(far / s.size) / std::log(rise));
+      mesh.degrees[e] = std::min(mesh.degrees[e], static_cast<int>(std::ceil(enough)));
     }
   }
   for (const auto& s : special) {

@@ -312,7 +312,7 @@ Layout layout_of(const Dense& a, double deviation, const Thresholds& thresholds,
   // Beside a start of its own nothing steep stands; at one that is a balance point functions are
   // like roots, and down to where both are told apart.
   constexpr double least = 1e-4, at_starts = 0.3;
-  const double apart = std::min(0.3 * std::pow(2, 3 - order), gap / 4),
+  const double apart = std::min(0.45 * std::pow(2, 3 - order), gap / 4),
                together = 0.1 * std::pow(4, 3 - order);
   Layout made{{}, {}, std::max({apart, together, least}), {}};
   // Beyond 5, 6 and 7 deviations lie 1e-5, 1e-7 and 1e-10 of E[X^2].
@@ -329,8 +329,6 @@ Layout layout_of(const Dense& a, double deviation, const Thresholds& thresholds,
 }
 
 }  // namespace
-
-bool GaussianNoise::damped() const { return turns(a_) <= kOften; }
 
 bool GaussianNoise::fits(const Thresholds& thresholds, int order) const {
   return layout_of(a_, deviation_, thresholds, order).nodes() <= kMostNodes;

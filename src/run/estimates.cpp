@@ -69,36 +69,6 @@ double shared_error(bool durations, const Changes& errors, const Results& result
   return count == 0 ? 0 : kShared * std::sqrt(squares / count);
 }
 
-double norm(const std::vector<double>& values) {
-  return std::sqrt(std::inner_product(values.begin(), values.end(), values.begin(), 0.0));
-}
-
-// By how much changes of a result, or of its family, are smaller than those before; 1 if unknown.
-class Falls {
- public:
-  Falls(const Changes& changes, const Changes& before, const Results& results)
-      : changes_(changes), before_(before), results_(results) {
-    if (before.size() != changes.size()) return;
-    for (bool durations : {false, true}) {
-      const double then = shared_error(durations, before, results);
-      if (then > 0) families_[durations] = shared_error(durations, changes, results) / then;
-    }
-  }
-
-  [[nodiscard]] double of(std::size_t r) const {
-    const Result& result = results_[r];
-    if (is_mean(result) || result.kind == Kind::share) return families_[is_duration(result)];
-    if (before_.size() != changes_.size() || before_[r].size() != changes_[r].size()) return 1;
-    const double then = norm(before_[r]);
-    return then > 0 ? norm(changes_[r]) / then : 1;
-  }
-
- private:
-  const Changes &changes_, &before_;
-  const Results& results_;
-  std::array<double, 2> families_{1, 1};
-};
-
 ErrorPerChange factor_of(const Result& result, std::size_t entry, ErrorPerChange factor) {
   if (is_mean(result) || result.kind == Kind::share) factor.alone = 1;
   if (result.kind == Kind::spectrum && !result.is_scalar() &&
@@ -299,15 +269,12 @@ Changes add_discretisation(const ErrorPerChange& factor, const Results& coarse,
       changes[r].push_back(std::abs(value[e] - last));
     }
   }
-  const Falls falls(changes, before, results);
   for (std::size_t r = 0; r < results.size(); ++r) {
-    const bool falls_count = factor.of_fall < kInfinity;
-    const double most = falls_count ? factor.of_fall * falls.of(r) : kInfinity;
     for (std::size_t e = 0; e < changes[r].size(); ++e) {
       const auto of = factor_of(results[r], e, factor);
       const bool known = r < before.size() && e < before[r].size();
-      const double last = std::min(of.last, most);
-      const double both = std::hypot(last * changes[r][e], known ? of.earlier * before[r][e] : 0);
+      const double both =
+          std::hypot(of.last * changes[r][e], known ? of.earlier * before[r][e] : 0);
       errors[r].push_back(of.alone * both);
     }
   }

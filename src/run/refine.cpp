@@ -30,10 +30,9 @@ constexpr int kLeastDegreeOfErrors = 10;
 // Under the levels of a table errors fall in uneven steps, of which the change before tells more,
 // and the other family of means: all changes of one are small at once now and then.
 constexpr double kEarlierOfTables = 4, kOtherFamilyOfTables = 0.6;
-// Of projections modes are added. Of a noise that is damped before it turns, errors fall by a ratio
-// that rises by no more than half from one step to the next. Of narrow bands they fall fast at
-// first, and then by less than half a step, which no change tells beforehand.
-constexpr double kLastOfProjections = 2.5, kEarlierOfProjections = 0.05, kFallOfProjections = 4;
+// Of projections modes are added. Errors may fall by a ratio, or stand still where no element
+// changes that counts, and then the change before tells more.
+constexpr double kLastOfProjections = 2.5, kEarlierOfProjections = 4;
 // Of levels with positions functions jump along curves, and errors fall slowly.
 constexpr double kLastOfCurves = 4;
 // Where elements move from level to level changes tell less.
@@ -606,13 +605,10 @@ ErrorPerChange RefinementSequence::error_per_change(int n) const {
     factor.last *= degrees;
     factor.earlier *= degrees;
     if (!waves_.empty()) factor.waves_from = std::ranges::min(waves_);
-    if (const auto* projector = scene_.projector()) {
+    if (scene_.projector()) {
       factor.last *= scene_.spring && !scene_.noise.gaussian ? kLastOfCurves : kLastOfProjections;
-      if (projector->damped()) {
-        factor.earlier *= kEarlierOfProjections;
-        factor.of_fall = kFallOfProjections;
-        factor.most_fall = kInfinity;
-      }
+      factor.earlier *= kEarlierOfProjections;
+      factor.most_fall = kInfinity;
     } else if (table_) {
       factor.earlier *= kEarlierOfTables;
       factor.of_other_family = kOtherFamilyOfTables;

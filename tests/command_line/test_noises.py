@@ -53,6 +53,16 @@ class Noises(Case):
                 self.assertLess(found["error"], float(options[-1]) * value)
             self.assertEqual(summary["results"]["E_V"]["value"], 0)
 
+    def test_gaussian_noise_between_two_grids(self):
+        """Where elements beside mu_d stay as they are, changes say nothing. By thrice as many nodes and graded finer."""
+        case = ("-noise", "ou", "-delta", "0", "-tau", "0.78128600705", "-noise_deviation", "0.83553482962", "-mu_d",
+                "0.71204369511", "-drag", "cubic", "-drag_coefficient", "0.001026321234", "-drag_cubic", "1.86233621951")
+        for degree in range(4, 10):
+            summary = self.summary(*case, "-quantities", "sticking", "-degree", str(degree), "-accuracy", "0.01")
+            for key, value in {"P_stick": 0.40120310, "mean_stick": 0.6299411, "mean_slide": 0.9401890}.items():
+                found = summary["results"][key]
+                self.assertLess(abs(found["value"] - value), found["error"] + 3e-7, (degree, key))
+
     def test_observables_that_jump_with_the_noise(self):
         """No node of the force stands at a jump, and no step of a path ends there."""
         case = ("-noise", "ou", "-delta", "0", "-mu_d", "0.5", "-quantities", "averages", "-observable", "(abs(x)<0.1)")

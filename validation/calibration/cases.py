@@ -142,6 +142,27 @@ def weak_friction(random):
             "delta": random.uniform(0.2, 0.6) / math.sqrt(tau)}
 
 
+def gaussian(random):
+    """Continuous paths, where elements and modes stand for levels: an Ornstein-Uhlenbeck process."""
+    mu_d = random.choice((1, 0.5, 0.25, random.uniform(0.02, 0.99)))
+    options = drag(random) | {"noise": "ou", "delta": 0, "tau": random.uniform(0.1, 3), "mu_s": 1, "mu_d": mu_d,
+                              "noise_deviation": random.uniform(0.4, 2)}
+    kind = random.random()
+    if kind < 0.35:
+        options["bias"] = random.uniform(-0.9, 0.9) * mu_d
+    elif kind < 0.5:
+        options["mu_s_minus"] = random.uniform(1, 1.6)
+    elif kind < 0.6 and mu_d < 1:
+        options |= {"friction": "stribeck", "stribeck_velocity": random.uniform(0.1, 1)}
+    return options
+
+
+def band(random):
+    """Noise that turns before it is damped, and such that does not."""
+    options = {name: value for name, value in gaussian(random).items() if name not in ("delta", "tau")}
+    return options | {"noise": "narrow_band", "band_width": random.uniform(0.4, 1), "band_frequency": random.uniform(0.2, 2)}
+
+
 @dataclasses.dataclass(frozen=True)
 class Group:
     what: str
@@ -160,6 +181,8 @@ GROUPS = {
     "scalars": Group("Coulomb friction", coulomb, SCALARS, (1e-2, 1e-4, 1e-6, 1e-8), 1e-12, most=2, cases=300),
     "nodes": Group("noise levels on nodes", fine, SCALARS, truth=1e-10, most=3),
     "telegraph": Group("telegraph noise", telegraph, SCALARS, truth=1e-10, most=3),
+    "gaussian": Group("continuous Ornstein-Uhlenbeck noise", gaussian, SCALARS, (1e-2, 1e-4, 1e-6), 1e-8, most=3),
+    "bands": Group("narrow bands, continuous", band, SCALARS, (3e-2, 1e-2), 3e-4, most=3, cases=20),
     "weakening": Group("Stribeck friction", weakening, SCALARS, truth=1e-10, most=3),
     "transforms": Group("transforms and hitting distributions", coulomb,
                         {"quantities": "entry_law,laplace", "lambda": "0.1,0.5,2,8"}, most=5),

@@ -40,7 +40,6 @@ class GaussianNoise final : public Projector {
   [[nodiscard]] const std::vector<CovarianceTerm>& terms() const { return terms_; }
   [[nodiscard]] double deviation() const { return deviation_; }
   [[nodiscard]] const linalg::Matrix<double>& matrix() const { return a_; }  ///< A
-  [[nodiscard]] bool damped() const override;
   [[nodiscard]] double power_spectral_density(double omega) const {
     return model::power_spectral_density(terms_, omega);
   }

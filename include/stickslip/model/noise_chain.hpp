@@ -114,8 +114,6 @@ class Projector {
                                                             int order) const;
   /// Whether the nodes of an order are few enough.
   [[nodiscard]] virtual bool fits(const Thresholds& thresholds, int order) const = 0;
-  /// Whether the noise is damped about as fast as it turns, which a narrow band is not.
-  [[nodiscard]] virtual bool damped() const = 0;
 
  private:
   [[nodiscard]] virtual Projection projection(const Thresholds& thresholds, int order) const = 0;

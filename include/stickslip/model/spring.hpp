@@ -46,7 +46,6 @@ class Spring final : public Projector {
   [[nodiscard]] const NoiseChain* chain() const { return chain_.get(); }
   [[nodiscard]] bool fits(const Thresholds& thresholds, int order) const override;
   static constexpr std::size_t kMostPairs = 3000;  ///< that fit to be solved for
-  [[nodiscard]] bool damped() const override { return false; }
 
  private:
   // Deviations in the stationary state of the body whose friction is replaced by the linear drag

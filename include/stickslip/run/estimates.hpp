@@ -32,7 +32,6 @@ struct ErrorPerChange {
   double of_waves = 1;            ///< both, of values of a spectrum that may have waves
   double waves_from = kInfinity;  ///< the lowest frequency of these
   double most_fall = kInfinity;   ///< of the error of a mean, from one discretisation to the next
-  double of_fall = kInfinity;     ///< what `last` is at most, over how changes fell
 };
 
 /// Adds the error of the discretisation,
@@ -62,10 +61,6 @@ struct ErrorPerChange {
 ///
 /// The derivative of a mean by a parameter has 1.5 `alone` d, and takes 1.5 `alone` times the
 /// larger share of both families: derivatives decide no status, but searches trust their errors.
-///
-/// Where errors fall by one ratio from each discretisation to the next, so do changes, and the
-/// error is less than the last of them by that ratio: `last` is at most `of_fall` times the root
-/// mean square of the changes of a family, or of the entries of what is in none, over that before.
 ///
 /// A value that `coarse` lacks is all change; `before` is empty where there are no two coarser
 /// discretisations. Returns the changes from `coarse`.
