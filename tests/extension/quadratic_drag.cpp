@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include "all.hpp"
-#include "formula.hpp"
 
 namespace stickslip::effects {
 namespace {

@@ -211,7 +211,12 @@ void read_effect(Given& given, const Choice& choice, const std::string& word, mo
 /// std::invalid_argument.
 void make_noise_levels(model::Scene& scene);
 
-/// Makes the drag of a formula for the forces and the tau in the scene. Throws BadInput.
+/// Makes the drag of a scene from a formula in v, mu_s, mu_d and tau, after examining it at the
+/// speeds that the noise brings about. Returns whether it can be a drag; where not, that is
+/// reported of `option`.
+bool set_drag(Given& given, model::Scene& scene, const char* option, const std::string& formula);
+
+/// The same again of the formula in the scene, for its forces and its tau. Throws BadInput.
 void renew_drag(model::Scene& scene);
 
 /// All that fixes the process of a scene, each by the name of its option, in the order in which

@@ -17,4 +17,12 @@ inline constexpr const Effect* kNoises[] = {
 extern const Effect kLinearDrag, kNoDrag, kCubicDrag, kDragExpression;
 inline constexpr const Effect* kDrags[] = {&kLinearDrag, &kNoDrag, &kCubicDrag, &kDragExpression};
 
+// A force over time from a file, which is beside them all.
+
+/// Its options.
+[[nodiscard]] std::vector<Option> force_options();
+
+/// Reads the record that they name, if any, into a scene; what is wrong with it is refused.
+void read_force(Given& given, model::Scene& scene);
+
 }  // namespace stickslip::effects

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "all.hpp"
-#include "formula.hpp"
 #include "levels.hpp"
 #include "stickslip/base/errors.hpp"
 #include "stickslip/model/drag.hpp"
@@ -12,21 +11,15 @@
 
 namespace stickslip::effects {
 
+namespace {
+
 // What drag laws with coefficients share.
 
-inline constexpr const char* kDragCoefficient = "drag_coefficient";
-inline constexpr const char* kDragMayNotGrow =
+constexpr const char *kDragCoefficient = "drag_coefficient", *kCubic = "drag_cubic",
+                     *kVelocity = "stribeck_velocity", *kExponent = "stribeck_exponent",
+                     *kExpression = "drag_expression";
+constexpr const char* kDragMayNotGrow =
     "the drag must not grow with the velocity, it would drive the body";
-
-[[nodiscard]] Option drag_coefficient();
-void read_linear_drag(Given& given, model::Scene& scene);
-
-/// Derivative by the coefficient.
-[[nodiscard]] model::Derivative by_drag_coefficient();
-
-/// Files state the coefficients of all of them.
-[[nodiscard]] model::Parameters drag_coefficients(const model::Scene& scene);
-[[nodiscard]] std::string drag_heading(const model::Scene& scene);
 
 Option drag_coefficient() {
   return Option::real(kDragCoefficient, "1/time", "1", Range::not_negative(), "c of the drag law",
@@ -41,9 +34,35 @@ void read_linear_drag(Given& given, model::Scene& scene) {
   scene.drag = {given.real(kDragCoefficient), 0};
 }
 
+void read_cubic_drag(Given& given, model::Scene& scene) {
+  read_linear_drag(given, scene);
+  scene.drag.cubic = given.real(kCubic);
+}
+
 model::Derivative by_drag_coefficient() {
   return {kDragCoefficient, [](const model::BranchFriction&, double v) { return -v; }};
 }
+
+// Files state the coefficients of all of them.
+model::Parameters drag_coefficients(const model::Scene& scene) {
+  return {{kDragCoefficient, scene.drag.linear}, {kCubic, scene.drag.cubic}};
+}
+
+std::string drag_heading(const model::Scene& scene) {
+  std::string text = "drag " + scene.drag_name;
+  if (scene.drag.linear > 0) text += fmt::format(", c = {:g}", scene.drag.linear);
+  if (scene.drag.cubic > 0) text += fmt::format(", c3 = {:g}", scene.drag.cubic);
+  return text;
+}
+
+model::Drag drag_of(const std::string& formula, const model::Scene& scene) {
+  const auto process = scene.meant();
+  return model::parse_drag(
+      formula, scene.friction, scene.tau, model::largest_force(scene), process.mean_force(),
+      std::max(process.noise.tail_intensity(), process.mirrored().noise.tail_intensity()));
+}
+
+}  // namespace
 
 const Effect kLinearDrag{.word = "linear",
                          .sentence = "-c v",
@@ -64,28 +83,6 @@ const Effect kNoDrag{.word = "none",
                      .values = drag_coefficients,
                      .heading = drag_heading};
 
-namespace {
-
-constexpr const char* kCubic = "drag_cubic";
-
-void read_cubic_drag(Given& given, model::Scene& scene) {
-  read_linear_drag(given, scene);
-  scene.drag.cubic = given.real(kCubic);
-}
-
-}  // namespace
-
-model::Parameters drag_coefficients(const model::Scene& scene) {
-  return {{kDragCoefficient, scene.drag.linear}, {kCubic, scene.drag.cubic}};
-}
-
-std::string drag_heading(const model::Scene& scene) {
-  std::string text = "drag " + scene.drag_name;
-  if (scene.drag.linear > 0) text += fmt::format(", c = {:g}", scene.drag.linear);
-  if (scene.drag.cubic > 0) text += fmt::format(", c3 = {:g}", scene.drag.cubic);
-  return text;
-}
-
 const Effect kCubicDrag{
     .word = "cubic",
     .sentence = "-c v - c3 v^3",
@@ -99,32 +96,6 @@ const Effect kCubicDrag{
     .values = drag_coefficients,
     .heading = drag_heading,
     .derivatives = {by_drag_coefficient()}};
-
-namespace {
-
-constexpr const char *kVelocity = "stribeck_velocity", *kExponent = "stribeck_exponent";
-
-void read_stribeck(Given& given, model::Scene& scene) {
-  scene.friction.stribeck = {given.real(kVelocity), given.real(kExponent)};
-}
-
-model::Parameters stribeck_values(const model::Scene& scene) {
-  const auto& stribeck = scene.friction.stribeck;
-  if (!stribeck) return {};
-  return {{kVelocity, stribeck->velocity}, {kExponent, stribeck->exponent}};
-}
-
-// At fixed static levels.
-double by_mu_s(const model::BranchFriction& here, double v) {
-  return here.own_mu_s ? 0.0 : here.friction.share(v) - 1;
-}
-
-double by_velocity(const model::BranchFriction& here, double v) {
-  const auto& friction = here.friction;
-  return (friction.mu_s - friction.mu_d) * friction.stribeck->share_by_velocity(v);
-}
-
-}  // namespace
 
 const Effect kCoulomb{
     .word = "coulomb", .sentence = "F = mu_d at every speed", .others = {"dry", "constant"}};
@@ -148,37 +119,24 @@ const Effect kStribeck{
                                  "take 1, or 2 for friction that is flat at rest",
                                  {.symbol = "\\gamma", .label = "Stribeck exponent"}),
                     true}},
-    .read = read_stribeck,
-    .values = stribeck_values,
-    .derivatives = {{"mu_s", by_mu_s}, {kVelocity, by_velocity}}};
-
-namespace {
-
-constexpr const char* kExpression = "drag_expression";
-
-// The formula may hold tau, whatever the noise.
-void read_expression(Given& given, model::Scene& scene) {
-  scene.drag = {0, 0};
-  scene.drag_expression = given.text(kExpression);
-  scene.tau = given.real(kTau);
-}
-
-bool make_law(Given& given, model::Scene& scene) {
-  return set_drag(given, scene, kExpression, scene.drag_expression);
-}
-
-model::Parameters expression_values(const model::Scene& scene) {
-  return {{kExpression, scene.drag_expression}, {kTau, scene.tau}};
-}
-
-model::Drag drag_of(const std::string& formula, const model::Scene& scene) {
-  const auto process = scene.meant();
-  return model::parse_drag(
-      formula, scene.friction, scene.tau, model::largest_force(scene), process.mean_force(),
-      std::max(process.noise.tail_intensity(), process.mirrored().noise.tail_intensity()));
-}
-
-}  // namespace
+    .read =
+        [](Given& given, model::Scene& scene) {
+          scene.friction.stribeck = {given.real(kVelocity), given.real(kExponent)};
+        },
+    .values = [](const model::Scene& scene) -> model::Parameters {
+      const auto& stribeck = scene.friction.stribeck;
+      if (!stribeck) return {};
+      return {{kVelocity, stribeck->velocity}, {kExponent, stribeck->exponent}};
+    },
+    .derivatives = {{"mu_s",  // at fixed static levels
+                     [](const model::BranchFriction& here, double v) {
+                       return here.own_mu_s ? 0.0 : here.friction.share(v) - 1;
+                     }},
+                    {kVelocity, [](const model::BranchFriction& here, double v) {
+                       const auto& friction = here.friction;
+                       return (friction.mu_s - friction.mu_d) *
+                              friction.stribeck->share_by_velocity(v);
+                     }}}};
 
 void renew_drag(model::Scene& scene) {
   if (scene.drag_expression.empty()) return;
@@ -212,9 +170,19 @@ const Effect kDragExpression{
                         "velocity branches are computed"),
                     true, "\"-v - 0.1*v*abs(v)\""},
                    {tau_option()}},
-    .read = read_expression,
-    .complete = make_law,
-    .values = expression_values,
+    .read =
+        [](Given& given, model::Scene& scene) {
+          scene.drag = {0, 0};
+          scene.drag_expression = given.text(kExpression);
+          scene.tau = given.real(kTau);  // which the formula may hold, whatever the noise
+        },
+    .complete =
+        [](Given& given, model::Scene& scene) {
+          return set_drag(given, scene, kExpression, scene.drag_expression);
+        },
+    .values = [](const model::Scene& scene) -> model::Parameters {
+      return {{kExpression, scene.drag_expression}, {kTau, scene.tau}};
+    },
     .heading = [](const model::Scene& scene) { return "drag b(v) = " + scene.drag_expression; }};
 
 }  // namespace stickslip::effects

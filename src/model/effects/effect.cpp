@@ -8,7 +8,6 @@
 #include <tuple>
 
 #include "all.hpp"
-#include "force_file.hpp"
 #include "levels.hpp"
 #include "stickslip/base/text.hpp"
 #include "stickslip/model/effect.hpp"
@@ -39,16 +38,14 @@ model::Parameters values_in(const Effect& effect, const model::Scene& scene) {
 }  // namespace
 
 bool Effect::knows(std::string_view option) const {
-  return std::any_of(parameters.begin(), parameters.end(),
-                     [option](const Parameter& p) { return p.option.name == option; });
+  return std::ranges::any_of(parameters, [&](const auto& p) { return p.option.name == option; });
 }
 
 const Effect& Choice::of(std::string_view word) const {
   static const Effect nothing{};
   if (word.empty()) return nothing;
   if (sum != nullptr && word.find('+') != std::string_view::npos) return *sum;
-  const auto found = std::find_if(effects.begin(), effects.end(),
-                                  [word](const Effect* effect) { return effect->word == word; });
+  const auto found = std::ranges::find(effects, word, &Effect::word);
   return found != effects.end() ? **found : *effects.front();
 }
 
@@ -147,9 +144,8 @@ model::Parameters parameters_of(const model::Scene& s) {
   model::Parameters all{
       {"mu_s", s.friction.mu_s}, {"mu_d", s.friction.mu_d}, {"drag", s.drag_name}};
   const auto add = [&all](const std::string& name, const auto& value) {
-    const bool known = std::any_of(all.begin(), all.end(),
-                                   [&name](const auto& each) { return each.first == name; });
-    if (!known) all.emplace_back(name, value);
+    const auto known = std::ranges::find(all, name, &model::Parameters::value_type::first);
+    if (known == all.end()) all.emplace_back(name, value);
   };
   const auto add_values = [&](const Choice& choice) {
     for (const auto* effect : choice.all_in(s)) {
@@ -242,8 +238,7 @@ void append(const Choice& all, std::vector<Option>& options) {
   for (const auto* effect : all.effects) {
     for (const auto& parameter : effect->parameters) {
       const auto& name = parameter.option.name;
-      const bool declared = std::any_of(options.begin(), options.end(),
-                                        [&name](const Option& o) { return o.name == name; });
+      const bool declared = std::ranges::find(options, name, &Option::name) != options.end();
       if (!declared) options.push_back(parameter.option);
     }
   }
@@ -320,10 +315,8 @@ std::vector<Option> made() {
            .label = "dynamic friction towards negative velocities",
            .slider = Slider{.low = 0.05, .high = 3}})};
   for (const auto* each : choices()) append(*each, all);
-  for (const auto& force : {force_options(), sample_options()})
-    all.insert(all.end(), force.begin(), force.end());
-  const auto others = options_of_the_body();
-  all.insert(all.end(), others.begin(), others.end());
+  for (const auto& others : {force_options(), options_of_the_body()})
+    all.insert(all.end(), others.begin(), others.end());
   return all;
 }
 

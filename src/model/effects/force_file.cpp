@@ -1,5 +1,3 @@
-#include "force_file.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,6 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "all.hpp"
 #include "csv_rows.hpp"
 #include "stickslip/base/text.hpp"
 #include "stickslip/model/effect.hpp"
@@ -46,27 +45,7 @@ model::ForceRecord read_rows(const std::string& file, double step) {
   return record;
 }
 
-}  // namespace
-
-std::vector<Option> sample_options() {
-  return {{kLayout,
-           Kind::choice,
-           "word",
-           "",
-           "",
-           {},
-           {"columns", "rows"},
-           "how -force_file holds its samples. columns: below the names time,force, unless this "
-           "option is given. rows: one after the other in rows, without times and names",
-           ""},
-          Option::real(kStep, "time", "", Range::positive(),
-                       "time between two samples of -sample_layout rows",
-                       "take for example 0.005, that of 200 samples in a second"),
-          Option::real(kRest, "time", "", Range::not_negative(),
-                       "time without force that is appended to -force_file; 0 unless given",
-                       "take as long as the body needs to stop")};
-}
-
+// Whether a layout has a step, and columns none; refuses what is not so.
 bool layout_is_sound(Given& given) {
   const bool rows = given.text(kLayout) == "rows";
   if (rows == given.has(kStep)) return true;
@@ -76,6 +55,9 @@ bool layout_is_sound(Given& given) {
   return false;
 }
 
+// The samples of -force_file: those of rows if -sample_layout says so, else what `columns` reads.
+// No force for the time of -force_rest follows, from one step behind the last sample on. Throws
+// std::invalid_argument with the line of what is no finite number.
 model::ForceRecord read_samples(const Given& given, const std::string& file,
                                 model::ForceRecord (*columns)(const std::string&)) {
   auto record = given.has(kStep) ? read_rows(file, given.real(kStep)) : columns(file);
@@ -92,8 +74,6 @@ model::ForceRecord read_samples(const Given& given, const std::string& file,
   }
   return record;
 }
-
-namespace {
 
 constexpr const char *kForceFile = "force_file", *kScale = "force_scale",
                      *kInterpolation = "force_interpolation", *kGravity = "force_gravity";
@@ -247,7 +227,23 @@ std::vector<Option> force_options() {
           "acceleration of gravity, where -force_file has a column vertical: the "
           "vertical acceleration a of the ground multiplies friction by 1 + a/force_gravity, "
           "with a times |-force_scale|; 9.80665 for files in m/s^2",
-          "in the unit of that column, after scaling")};
+          "in the unit of that column, after scaling"),
+      {kLayout,
+       Kind::choice,
+       "word",
+       "",
+       "",
+       {},
+       {"columns", "rows"},
+       "how -force_file holds its samples. columns: below the names time,force, unless this "
+       "option is given. rows: one after the other in rows, without times and names",
+       ""},
+      Option::real(kStep, "time", "", Range::positive(),
+                   "time between two samples of -sample_layout rows",
+                   "take for example 0.005, that of 200 samples in a second"),
+      Option::real(kRest, "time", "", Range::not_negative(),
+                   "time without force that is appended to -force_file; 0 unless given",
+                   "take as long as the body needs to stop")};
 }
 
 void read_force(Given& given, model::Scene& scene) {

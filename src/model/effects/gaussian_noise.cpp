@@ -161,7 +161,8 @@ std::string larger_deviation(const model::Scene&) {
 }
 
 constexpr const char *kGroundFrequency = "ground_frequency", *kGroundDamping = "ground_damping",
-                     *kGroundIntensity = "ground_intensity";
+                     *kGroundIntensity = "ground_intensity", *kBandFrequency = "band_frequency",
+                     *kBandWidth = "band_width";
 
 // White noise of spectrum S at the foot of an oscillator, q'' + 2 zeta w q' + w^2 q = -noise, gives
 // its mass the acceleration X = 2 zeta w q' + w^2 q, of which the spectrum is
@@ -226,20 +227,6 @@ const Effect kFilteredNoise{
     .values = deviation_of,
     .stronger = larger_deviation};
 
-namespace {
-
-constexpr const char *kBandFrequency = "band_frequency", *kBandWidth = "band_width";
-
-model::CovarianceTerm band_of(const model::Scene& scene) {
-  return {variance_of(scene), own_number(scene, kBandWidth), own_number(scene, kBandFrequency)};
-}
-
-void read_band(Given& given, model::Scene& scene) {
-  make_named(given, scene, {kBandFrequency, kBandWidth}, 1, band_of);
-}
-
-}  // namespace
-
 const Effect kNarrowBand{
     .word = "narrow_band",
     .sentence = "Gaussian noise of covariance deviation^2 exp(-gamma t) cos(omega t)",
@@ -262,7 +249,14 @@ const Effect kNarrowBand{
                .slider = Slider{.low = 0.1, .high = 5, .start = 0.5, .logarithmic = true}}),
           true, "0.5"},
          {deviation_option()}},
-    .read = read_band,
+    .read =
+        [](Given& given, model::Scene& scene) {
+          make_named(given, scene, {kBandFrequency, kBandWidth}, 1,
+                     [](const model::Scene& of) -> model::CovarianceTerm {
+                       return {variance_of(of), own_number(of, kBandWidth),
+                               own_number(of, kBandFrequency)};
+                     });
+        },
     .complete = complete_continuous,
     .values = deviation_of,
     .stronger = larger_deviation};

@@ -45,7 +45,6 @@ void require_number_of_states(double count);
 inline constexpr const char *kTau = "tau", *kDelta = "delta", *kLevels = "noise_levels",
                             *kDeviation = "noise_deviation", *kStiffness = "spring_stiffness";
 [[nodiscard]] Option tau_option();
-[[nodiscard]] Option delta_option();
 [[nodiscard]] Option deviation_option();
 
 }  // namespace stickslip::effects

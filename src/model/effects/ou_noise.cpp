@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <exception>
-#include <memory>
 #include <new>
 #include <stdexcept>
 
@@ -52,7 +51,12 @@ void require_number_of_states(double count) {
 
 namespace {
 
-constexpr const char* kSteps = "delta_per_mu_s";
+constexpr const char *kSteps = "delta_per_mu_s", *kAmplitude = "telegraph_amplitude",
+                     *kRate = "telegraph_rate";
+
+double deviation_of_ou(const model::Scene& scene) {
+  return scene.noise.deviation.value_or(1 / std::sqrt(scene.tau));
+}
 
 void read_ou(Given& given, model::Scene& scene) {
   scene.tau = given.real(kTau);
@@ -67,7 +71,7 @@ void read_ou(Given& given, model::Scene& scene) {
   if (steps) scene.delta = scene.friction.mu_s / *steps;
   scene.noise_levels = given.integer(kLevels);
   if (given.has(kDeviation)) scene.noise.deviation = given.real(kDeviation);
-  const double tau = scene.tau, sigma = scene.noise.deviation.value_or(1 / std::sqrt(tau));
+  const double tau = scene.tau, sigma = deviation_of_ou(scene);
   if (given.sound() && scene.delta == 0) {
     if (given.has(kLevels)) {
       return given.refuse(kLevels, "counts levels, and with -delta 0 there are none",
@@ -101,8 +105,7 @@ void refuse_coarse_steps(Given& given, const model::Scene& scene, double sigma) 
 
 bool check_levels(Given& given, model::Scene& scene) {
   if (scene.noise.gaussian || !given.sound()) return complete_continuous(given, scene);
-  const double delta = scene.delta,
-               sigma = scene.noise.deviation.value_or(1 / std::sqrt(scene.tau)),
+  const double delta = scene.delta, sigma = deviation_of_ou(scene),
                ratio = delta * delta / (sigma * sigma);
   int full = 0;
   try {
@@ -158,15 +161,6 @@ Option tau_option() {
                        .others = {"tau_c", "t_corr", "correlation_time"}});
 }
 
-Option delta_option() {
-  return Option::real(
-      kDelta, "force", "0.125", Range::not_negative(),
-      "step between neighbouring noise levels; 0: none, the Gaussian noise of continuous paths. "
-      "Unless given, half the deviation with -study tau",
-      "take for example 0.125, or 0",
-      {.symbol = "\\delta", .label = "noise step", .others = {"dx", "step", "noise_step"}});
-}
-
 Option deviation_option() {
   return Option::real(
       kDeviation, "force", "", Range::positive(),
@@ -190,7 +184,13 @@ const Effect kOrnsteinUhlenbeck{
     .page = "-study tau in docs/white_noise.md",
     .parameters =
         {{tau_option()},
-         {delta_option()},
+         {Option::real(
+             kDelta, "force", "0.125", Range::not_negative(),
+             "step between neighbouring noise levels; 0: none, the Gaussian noise of continuous "
+             "paths. "
+             "Unless given, half the deviation with -study tau",
+             "take for example 0.125, or 0",
+             {.symbol = "\\delta", .label = "noise step", .others = {"dx", "step", "noise_step"}})},
          {Option::integer(kSteps, "", Range::whole(1, 1e6),
                           "number n of noise steps up to mu_s, in the place of -delta: delta = "
                           "mu_s/n puts mu_s on a level, so that results are continuous in mu_s",
@@ -213,27 +213,6 @@ const Effect kOrnsteinUhlenbeck{
     .derivatives = {{kTau}},
     .stronger = stronger_ou};
 
-namespace {
-
-constexpr const char *kAmplitude = "telegraph_amplitude", *kRate = "telegraph_rate";
-
-model::LevelTable telegraph_levels(const model::Scene& scene) {
-  const double a = own_number(scene, kAmplitude), rate = own_number(scene, kRate);
-  return model::LevelTable({{-a, rate, 0}, {a, 0, rate}});
-}
-
-bool complete_telegraph(Given& given, model::Scene& scene) {
-  return make_levels(given, scene, kRate,
-                     "take for example -telegraph_amplitude 1 -telegraph_rate 1");
-}
-
-std::string telegraph_text(const model::Scene& scene) {
-  return fmt::format("telegraph noise a = {:g}, rate = {:g}", own_number(scene, kAmplitude),
-                     own_number(scene, kRate));
-}
-
-}  // namespace
-
 const Effect kTelegraph{
     .word = "telegraph",
     .sentence = "two levels",
@@ -254,8 +233,20 @@ const Effect kTelegraph{
                .label = "rate of the jumps",
                .slider = Slider{.low = 0.05, .high = 10, .start = 1, .logarithmic = true}}),
           true, "1"}},
-    .complete = complete_telegraph,
-    .levels = telegraph_levels,
-    .heading = telegraph_text};
+    .complete =
+        [](Given& given, model::Scene& scene) {
+          return make_levels(given, scene, kRate,
+                             "take for example -telegraph_amplitude 1 -telegraph_rate 1");
+        },
+    .levels =
+        [](const model::Scene& scene) {
+          const double a = own_number(scene, kAmplitude), rate = own_number(scene, kRate);
+          return model::LevelTable({{-a, rate, 0}, {a, 0, rate}});
+        },
+    .heading =
+        [](const model::Scene& scene) {
+          return fmt::format("telegraph noise a = {:g}, rate = {:g}", own_number(scene, kAmplitude),
+                             own_number(scene, kRate));
+        }};
 
 }  // namespace stickslip::effects

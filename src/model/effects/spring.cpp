@@ -1,9 +1,6 @@
-#include <fmt/format.h>
 
-#include <algorithm>
 #include <memory>
 
-#include "all.hpp"
 #include "levels.hpp"
 #include "stickslip/model/effect.hpp"
 #include "stickslip/model/spring.hpp"

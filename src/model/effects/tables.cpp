@@ -3,7 +3,6 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <memory>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -17,7 +16,7 @@
 namespace stickslip::effects {
 namespace {
 
-constexpr const char *kStates = "noise_states", *kRates = "noise_rates";
+constexpr const char *kStates = "noise_states", *kRates = "noise_rates", *kFile = "noise_file";
 
 /// What is wrong with a file, as a problem of the option that names it.
 class Unfit : public std::invalid_argument {
@@ -76,11 +75,6 @@ model::LevelTable read_chain(const std::string& states, const std::string& rates
   }
 }
 
-model::LevelTable levels_of_chain(const model::Scene& scene) {
-  return read_chain(std::get<std::string>(own_value(scene, kStates)),
-                    std::get<std::string>(own_value(scene, kRates)));
-}
-
 bool complete_noise_chain(Given& given, model::Scene& scene) {
   if (!given.sound()) return false;
   try {
@@ -114,10 +108,15 @@ const Effect kNoiseChain{
                         {.label = "rates of", .others = {"generator", "noise_generator"}}),
                     true, "rates.csv"}},
     .complete = complete_noise_chain,
-    .levels = levels_of_chain,
-    .heading = [](const model::Scene& scene) {
-      return "noise chain of " + std::get<std::string>(own_value(scene, kStates));
-    }};
+    .levels =
+        [](const model::Scene& scene) {
+          return read_chain(std::get<std::string>(own_value(scene, kStates)),
+                            std::get<std::string>(own_value(scene, kRates)));
+        },
+    .heading =
+        [](const model::Scene& scene) {
+          return "noise chain of " + std::get<std::string>(own_value(scene, kStates));
+        }};
 
 model::LevelTable read_levels(const std::string& file) {
   CsvRows<3> rows;
@@ -138,21 +137,6 @@ model::LevelTable read_levels(const std::string& file) {
   }
 }
 
-namespace {
-
-constexpr const char* kFile = "noise_file";
-
-bool complete_noise_file(Given& given, model::Scene& scene) {
-  return make_levels(given, scene, kFile,
-                     "write CSV with the columns x,rate_up,rate_down, x rising");
-}
-
-model::LevelTable levels_of_file(const model::Scene& scene) {
-  return read_levels(std::get<std::string>(own_value(scene, kFile)));
-}
-
-}  // namespace
-
 const Effect kNoiseFile{
     .word = "file",
     .sentence = "any birth-death chain",
@@ -165,10 +149,18 @@ const Effect kNoiseFile{
                          .others = {"record", "recording", "force_record", "forcing", "data"},
                          .page = "docs/recorded_forces.md"}),
                     true, "levels.csv"}},
-    .complete = complete_noise_file,
-    .levels = levels_of_file,
-    .heading = [](const model::Scene& scene) {
-      return "noise levels of " + std::get<std::string>(own_value(scene, kFile));
-    }};
+    .complete =
+        [](Given& given, model::Scene& scene) {
+          return make_levels(given, scene, kFile,
+                             "write CSV with the columns x,rate_up,rate_down, x rising");
+        },
+    .levels =
+        [](const model::Scene& scene) {
+          return read_levels(std::get<std::string>(own_value(scene, kFile)));
+        },
+    .heading =
+        [](const model::Scene& scene) {
+          return "noise levels of " + std::get<std::string>(own_value(scene, kFile));
+        }};
 
 }  // namespace stickslip::effects
