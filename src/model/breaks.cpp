@@ -91,18 +91,17 @@ Interval chained(const Jet& u, const Jet& w, std::size_t k) {
   return sum * inverse(point(static_cast<double>(k)));
 }
 
-// g with g' = w u', from its values.
-Jet chain(const Jet& u, const Jet& w, Interval value) {
-  Jet g;
-  g.rough = u.rough || w.rough;
-  g.at[0] = value;
-  for (std::size_t k = 1; k <= kJetOrder; ++k) g.at[k] = chained(u, w, k);
-  return g;
+Interval rising(const Jet& f, double (*function)(double)) {
+  return widened(function(f.at[0].low), function(f.at[0].high));
 }
 
-template <class Function>
-Interval rising(const Jet& f, Function function) {
-  return widened(function(f.at[0].low), function(f.at[0].high));
+// A rising function g of u, from g' = w u'.
+Jet chain(const Jet& u, const Jet& w, double (*function)(double)) {
+  Jet g;
+  g.rough = u.rough || w.rough;
+  g.at[0] = rising(u, function);
+  for (std::size_t k = 1; k <= kJetOrder; ++k) g.at[k] = chained(u, w, k);
+  return g;
 }
 
 struct Circular {
@@ -168,7 +167,7 @@ Jet real_power(const Jet& f, double p) {
   if (u.low <= 0) return anything(p > 0 ? Interval{0, std::pow(u.high, p)} : kAll);
   Jet g;
   g.rough = f.rough;
-  g.at[0] = p > 0 ? rising(f, [p](double x) { return std::pow(x, p); })
+  g.at[0] = p > 0 ? widened(std::pow(u.low, p), std::pow(u.high, p))
                   : widened(std::pow(u.high, p), std::pow(u.low, p));
   for (std::size_t k = 1; k <= kJetOrder; ++k) {
     Interval sum;
@@ -249,14 +248,14 @@ Jet pow(const Jet& f, const Jet& g) {
 Jet exp(const Jet& f) {
   Jet g;
   g.rough = f.rough;
-  g.at[0] = rising(f, [](double x) { return std::exp(x); });
+  g.at[0] = rising(f, std::exp);
   for (std::size_t k = 1; k <= kJetOrder; ++k) g.at[k] = chained(f, g, k);
   return g;
 }
 
 Jet log(const Jet& f) {
   if (f.at[0].low <= 0) return anything();
-  return chain(f, Jet(1) / f, rising(f, [](double x) { return std::log(x); }));
+  return chain(f, Jet(1) / f, std::log);
 }
 
 Jet sqrt(const Jet& f) { return real_power(f, 0.5); }
@@ -267,27 +266,24 @@ Jet tan(const Jet& f) {
   const Interval cosine = cos(f).at[0];
   if (cosine.holds_zero()) return anything();
   const Interval secant = inverse(cosine);
-  return tangent(f, rising(f, [](double x) { return std::tan(x); }), secant * secant, 1);
+  return tangent(f, rising(f, std::tan), secant * secant, 1);
 }
 
 Jet tanh(const Jet& f) {
   const auto slope = [](double x) { return 1 / std::cosh(x) / std::cosh(x); };
   const auto [flat, steep] = std::minmax({slope(f.at[0].low), slope(f.at[0].high)});
-  return tangent(f, within(rising(f, [](double x) { return std::tanh(x); }), -1, 1),
+  return tangent(f, within(rising(f, std::tanh), -1, 1),
                  widened(flat, f.at[0].holds_zero() ? 1 : steep), -1);
 }
 
 Jet asin(const Jet& f) {
   if (f.at[0].size() >= 1) return anything({-2, 2});
-  return chain(f, Jet(1) / sqrt(Jet(1) - squared(f)),
-               rising(f, [](double x) { return std::asin(x); }));
+  return chain(f, Jet(1) / sqrt(Jet(1) - squared(f)), std::asin);
 }
 
 Jet acos(const Jet& f) { return Jet(std::numbers::pi / 2) - asin(f); }
 
-Jet atan(const Jet& f) {
-  return chain(f, Jet(1) / (Jet(1) + squared(f)), rising(f, [](double x) { return std::atan(x); }));
-}
+Jet atan(const Jet& f) { return chain(f, Jet(1) / (Jet(1) + squared(f)), std::atan); }
 
 Jet atan2(const Jet& f, const Jet& g) {
   constexpr double half_turn = std::numbers::pi;
@@ -299,7 +295,7 @@ Jet atan2(const Jet& f, const Jet& g) {
 
 Jet sinh(const Jet& f) {
   Jet g = (exp(f) - exp(-f)) * Jet(0.5);
-  g.at[0] = rising(f, [](double x) { return std::sinh(x); });
+  g.at[0] = rising(f, std::sinh);
   return g;
 }
 
@@ -309,21 +305,16 @@ Jet cosh(const Jet& f) {
   return g;
 }
 
-Jet asinh(const Jet& f) {
-  return chain(f, Jet(1) / sqrt(Jet(1) + squared(f)),
-               rising(f, [](double x) { return std::asinh(x); }));
-}
+Jet asinh(const Jet& f) { return chain(f, Jet(1) / sqrt(Jet(1) + squared(f)), std::asinh); }
 
 Jet acosh(const Jet& f) {
   if (f.at[0].low <= 1) return anything();
-  return chain(f, Jet(1) / sqrt(squared(f) - Jet(1)),
-               rising(f, [](double x) { return std::acosh(x); }));
+  return chain(f, Jet(1) / sqrt(squared(f) - Jet(1)), std::acosh);
 }
 
 Jet atanh(const Jet& f) {
   if (f.at[0].size() >= 1) return anything();
-  return chain(f, Jet(1) / (Jet(1) - squared(f)),
-               rising(f, [](double x) { return std::atanh(x); }));
+  return chain(f, Jet(1) / (Jet(1) - squared(f)), std::atanh);
 }
 
 Jet abs(const Jet& f) {

@@ -9,9 +9,7 @@
 #include <cmath>
 #include <cstdint>
 #include <utility>
-#include <vector>
 
-#include "stickslip/base/text.hpp"
 #include "stickslip/model/expression.hpp"
 #include "stickslip/model/noise_chain.hpp"
 

@@ -5,12 +5,10 @@
 #include <muParserBytecode.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <optional>
 #include <stdexcept>
 #include <string_view>
-#include <vector>
 
 namespace stickslip::model {
 namespace {
@@ -143,34 +141,27 @@ double named_of_many(const double*, int count) {
   return static_cast<double>(which);
 }
 
+constexpr std::pair<const char*, double (*)(double)> kOfOne[] = {
+    {"sin", named<Operation::sin>},     {"cos", named<Operation::cos>},
+    {"tan", named<Operation::tan>},     {"cot", named<Other::cot>},
+    {"asin", named<Operation::asin>},   {"acos", named<Operation::acos>},
+    {"atan", named<Operation::atan>},   {"sinh", named<Operation::sinh>},
+    {"cosh", named<Operation::cosh>},   {"tanh", named<Operation::tanh>},
+    {"coth", named<Other::coth>},       {"asinh", named<Operation::asinh>},
+    {"acosh", named<Operation::acosh>}, {"atanh", named<Operation::atanh>},
+    {"exp", named<Operation::exp>},     {"log", named<Operation::log>},
+    {"ln", named<Operation::log>},      {"log2", named<Other::log2>},
+    {"log10", named<Other::log10>},     {"sqrt", named<Operation::sqrt>},
+    {"sign", named<Operation::sign>},   {"rint", named<Operation::rint>},
+    {"abs", named<Operation::abs>}};
+
 void define_functions(mu::Parser& parser) {
   parser.ClearFun();  // among them random numbers
   parser.ClearInfixOprt();
   parser.DefineInfixOprt("-", named<Operation::negate>);
   parser.DefineInfixOprt("+", named<Other::plus>);
-  parser.DefineFun("sin", named<Operation::sin>);
-  parser.DefineFun("cos", named<Operation::cos>);
-  parser.DefineFun("tan", named<Operation::tan>);
-  parser.DefineFun("cot", named<Other::cot>);
-  parser.DefineFun("asin", named<Operation::asin>);
-  parser.DefineFun("acos", named<Operation::acos>);
-  parser.DefineFun("atan", named<Operation::atan>);
+  for (const auto& [name, function] : kOfOne) parser.DefineFun(name, function);
   parser.DefineFun("atan2", named_of_two<Operation::atan2>);
-  parser.DefineFun("sinh", named<Operation::sinh>);
-  parser.DefineFun("cosh", named<Operation::cosh>);
-  parser.DefineFun("tanh", named<Operation::tanh>);
-  parser.DefineFun("coth", named<Other::coth>);
-  parser.DefineFun("asinh", named<Operation::asinh>);
-  parser.DefineFun("acosh", named<Operation::acosh>);
-  parser.DefineFun("atanh", named<Operation::atanh>);
-  parser.DefineFun("exp", named<Operation::exp>);
-  for (const char* natural : {"log", "ln"}) parser.DefineFun(natural, named<Operation::log>);
-  parser.DefineFun("log2", named<Other::log2>);
-  parser.DefineFun("log10", named<Other::log10>);
-  parser.DefineFun("sqrt", named<Operation::sqrt>);
-  parser.DefineFun("sign", named<Operation::sign>);
-  parser.DefineFun("rint", named<Operation::rint>);
-  parser.DefineFun("abs", named<Operation::abs>);
   parser.DefineFun("sum", named_of_many<Many::sum>);
   parser.DefineFun("avg", named_of_many<Many::avg>);
   parser.DefineFun("min", named_of_many<Many::min>);

@@ -7,9 +7,6 @@
 #include <complex>
 #include <cstdlib>
 #include <limits>
-#include <numeric>
-#include <stdexcept>
-#include <vector>
 
 #include "stickslip/base/text.hpp"
 #include "transitions.hpp"
@@ -21,25 +18,6 @@ namespace {
 // operands one each from decimal notation; eight units cover both, and stay far below the 1e-12
 // at which two different thresholds must be distinguished.
 constexpr double kRounding = 8 * std::numeric_limits<double>::epsilon();
-
-}  // namespace
-
-int floor_index(double ratio) {
-  const double nearest = std::round(ratio);
-  const bool is_integer = std::abs(ratio - nearest) <= kRounding * std::max(1.0, std::abs(ratio));
-  const double index = is_integer ? nearest : std::floor(ratio);
-  if (!(std::abs(index) < std::numeric_limits<int>::max())) {
-    throw std::out_of_range("grid index does not fit an integer");
-  }
-  return static_cast<int>(index);
-}
-
-double snapped_difference(double a, double b) {
-  const double difference = a - b;
-  return std::abs(difference) <= kRounding * std::max(std::abs(a), std::abs(b)) ? 0.0 : difference;
-}
-
-namespace {
 
 void require_rate(double rate, bool at_end, std::size_t row, const char* name) {
   if (at_end ? rate == 0 : rate > 0 && std::isfinite(rate)) return;
@@ -84,7 +62,50 @@ std::vector<double> weights(const std::vector<Level>& levels) {
   return w;
 }
 
+// The first level above x, or also one that equals it; highest + 1 if there is none.
+int first_beyond(const LevelTable& table, double x, bool above) {
+  int low = table.lowest(), high = table.highest() + 1;
+  while (low < high) {
+    const int middle = low + (high - low) / 2;
+    const double difference = snapped_difference(table.at(middle).x, x);
+    if (difference < 0 || (above && difference == 0)) {
+      low = middle + 1;
+    } else {
+      high = middle;
+    }
+  }
+  return low;
+}
+
+// int_0^infinity Cov(X_0, X_t) dt of the chain of steps as it ends: an edge passes on S_i = sum_(j
+// <= i) pi_j x_j, as LevelTable has it, and both halves are alike.
+double intensity(const NoiseChain& chain) {
+  const auto p = stationary_distribution(chain);
+  double below = 0, sum = 0;
+  for (int i = chain.lowest(); i < 0; ++i) {
+    const double weight = p[i - chain.lowest()], flow = weight * chain.up_rate(i);
+    below += weight * chain.level(i);
+    if (flow > 0) sum += below * (below / flow);
+  }
+  return 2 * sum;
+}
+
 }  // namespace
+
+int floor_index(double ratio) {
+  const double nearest = std::round(ratio);
+  const bool is_integer = std::abs(ratio - nearest) <= kRounding * std::max(1.0, std::abs(ratio));
+  const double index = is_integer ? nearest : std::floor(ratio);
+  if (!(std::abs(index) < std::numeric_limits<int>::max())) {
+    throw std::out_of_range("grid index does not fit an integer");
+  }
+  return static_cast<int>(index);
+}
+
+double snapped_difference(double a, double b) {
+  const double difference = a - b;
+  return std::abs(difference) <= kRounding * std::max(std::abs(a), std::abs(b)) ? 0.0 : difference;
+}
 
 LevelTable::LevelTable(std::vector<Level> levels) : levels_(std::move(levels)) {
   require_chain(levels_);
@@ -341,25 +362,6 @@ LevelTable LevelTable::mirrored() const {
   return other;
 }
 
-namespace {
-
-// The first level above x, or also one that equals it; highest + 1 if there is none.
-int first_beyond(const LevelTable& table, double x, bool above) {
-  int low = table.lowest(), high = table.highest() + 1;
-  while (low < high) {
-    const int middle = low + (high - low) / 2;
-    const double difference = snapped_difference(table.at(middle).x, x);
-    if (difference < 0 || (above && difference == 0)) {
-      low = middle + 1;
-    } else {
-      high = middle;
-    }
-  }
-  return low;
-}
-
-}  // namespace
-
 double NoiseChain::up(int i) const {
   if (table) return table->at(i).up / rate(i);
   if (i >= levels) return 0;
@@ -478,23 +480,6 @@ NoiseMoments noise_moments(const NoiseChain& chain, int low, int high) {
   const double total = within + beyond;
   return {within / total, beyond / total, square / total};
 }
-
-namespace {
-
-// int_0^infinity Cov(X_0, X_t) dt of the chain of steps as it ends: an edge passes on S_i = sum_(j
-// <= i) pi_j x_j, as LevelTable has it, and both halves are alike.
-double intensity(const NoiseChain& chain) {
-  const auto p = stationary_distribution(chain);
-  double below = 0, sum = 0;
-  for (int i = chain.lowest(); i < 0; ++i) {
-    const double weight = p[i - chain.lowest()], flow = weight * chain.up_rate(i);
-    below += weight * chain.level(i);
-    if (flow > 0) sum += below * (below / flow);
-  }
-  return 2 * sum;
-}
-
-}  // namespace
 
 double power_spectral_density(const NoiseChain& chain, double omega) {
   // Where i omega - Q is singular, the integral over all times.

@@ -11,8 +11,6 @@
 #include <stdexcept>
 
 #include "stickslip/base/errors.hpp"
-#include "stickslip/base/text.hpp"
-#include "stickslip/model/expression.hpp"
 #include "stickslip/model/noise_chain.hpp"
 #include "stickslip/model/process.hpp"
 
@@ -246,8 +244,7 @@ void examine(Observable& f, const std::vector<double>& x, double step, double re
   Examination examination(f, reach);
   constexpr std::array signs{1.0, -1.0};
   constexpr std::size_t too_many = 65;
-  const double lowest = *std::min_element(x.begin(), x.end()),
-               highest = *std::max_element(x.begin(), x.end());
+  const auto [lowest, highest] = std::ranges::minmax(x);
   std::vector<Break> found;
   for (double level : x) {
     for (double sign : signs) merge(found, examination.look(level, sign));

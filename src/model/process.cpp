@@ -2,10 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
-#include <utility>
-
 #include "stickslip/base/text.hpp"
 #include "stickslip/linalg/dense.hpp"
 
@@ -14,6 +10,17 @@ namespace {
 
 // The share of excursions below which a start does not count.
 constexpr double kNegligibleShare = 1e-18;
+
+// The first and the last level with the force of level i.
+struct Block {
+  Block(const NoiseChain& chain, int i) : first(i), last(i) {
+    while (first > chain.lowest() && chain.level(first - 1) == chain.level(i)) --first;
+    while (last < chain.highest() && chain.level(last + 1) == chain.level(i)) ++last;
+  }
+  [[nodiscard]] bool holds(int i) const { return first <= i && i <= last; }
+
+  int first, last;
+};
 
 }  // namespace
 
@@ -87,21 +94,6 @@ std::string please_report(const Process& process) {
       process.friction.mu_s, process.friction.mu_d, process.noise.tau, process.noise.delta,
       process.noise.levels, drag, process.bias);
 }
-
-namespace {
-
-// The first and the last level with the force of level i.
-struct Block {
-  Block(const NoiseChain& chain, int i) : first(i), last(i) {
-    while (first > chain.lowest() && chain.level(first - 1) == chain.level(i)) --first;
-    while (last < chain.highest() && chain.level(last + 1) == chain.level(i)) ++last;
-  }
-  [[nodiscard]] bool holds(int i) const { return first <= i && i <= last; }
-
-  int first, last;
-};
-
-}  // namespace
 
 ChangeRates change_rates(const NoiseChain& chain, int i) {
   if (!chain.has_levels()) return {kInfinity, kInfinity};

@@ -8,7 +8,6 @@
 #include <numeric>
 
 #include "force_elements.hpp"
-#include "stickslip/base/text.hpp"
 
 namespace stickslip::model {
 namespace {

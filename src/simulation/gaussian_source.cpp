@@ -159,27 +159,23 @@ struct Scales {
 Scales scales_of(const model::Process& process) {
   const auto& noise = process.noise;
   const double root = std::sqrt(process.stiffness);
-  double slowest = kInfinity, fastest = noise.rate();
+  double slowest = 1 / noise.correlation_time(), fastest = noise.rate(),
+         deviation = noise.standard_deviation(), strength = noise.intensity();
   if (noise.gaussian) {
-    for (const auto& term : noise.gaussian->terms()) slowest = std::min(slowest, term.decay);
+    slowest = std::ranges::min(noise.gaussian->terms(), {}, &model::CovarianceTerm::decay).decay;
     fastest = noise.gaussian->matrix().largest();
-  } else {
-    slowest = 1 / noise.correlation_time();
+    deviation = noise.gaussian->deviation();
+    strength = noise.gaussian->power_spectral_density(0) / 2;
   }
   const auto& [drag, friction] = std::tie(process.drag, process.friction);
-  const double deviation =
-                   noise.gaussian ? noise.gaussian->deviation() : noise.standard_deviation(),
-               speed = drag.terminal_velocity(3 * deviation),
+  const double speed = drag.terminal_velocity(3 * deviation),
                slope = std::isfinite(speed) ? drag.steepest(speed) : 0,
                loss = std::isfinite(speed) ? -drag(speed) / speed : 0;
   // Under dry friction mu alone white noise of strength 2 D forgets its velocity at mu^2/(4 D).
   const double least = std::min(friction.mu_d, friction.mirrored().mu_d),
                bias = process.stiffness > 0 ? 0 : std::abs(process.bias),
                held = std::max(least - bias, 0.0),
-               strength = std::max(noise.gaussian ? noise.gaussian->power_spectral_density(0) / 2
-                                                  : noise.intensity(),
-                                   1e-300),
-               by_friction = held * held / (4 * strength);
+               by_friction = held * held / (4 * std::max(strength, 1e-300));
   if (process.stiffness == 0) return {fastest + slope, 1 / slowest + 1 / (loss + by_friction)};
   // The amplitude of an oscillation falls half as fast as its energy; an overdamped body creeps.
   const double decay = loss + std::min(by_friction, root);

@@ -283,8 +283,9 @@ struct Scene {
   /// The process whose motion is followed, by simulation or under a given force: that which is
   /// meant, with the levels of the noise and the spring itself.
   [[nodiscard]] Process followed() const {
-    Process all = meant();
-    if (spring && spring->chain() != nullptr) all.noise = *spring->chain();
+    const bool by_levels = spring && spring->chain() != nullptr;
+    Process all =
+        by_levels ? Process{*spring->chain(), friction, with_weakening(drag, friction)} : meant();
     all.bias = bias;
     all.stiffness = stiffness;
     return all;
