@@ -22,16 +22,16 @@
 namespace stickslip {
 namespace {
 
-[[noreturn]] void fail(const std::string& what, const std::string& file) {
-  throw SystemFailure(fmt::format("{} {}: {}", what, file, std::strerror(errno)));
+[[noreturn]] void fail(const std::string& what) {
+  throw SystemFailure(fmt::format("{}: {}", what, std::strerror(errno)));
 }
 
 void flush_to_disk(const std::string& file) {
   const int descriptor = open(file.c_str(), O_RDONLY);
-  if (descriptor < 0) fail("cannot open", file);
+  if (descriptor < 0) fail("cannot open " + file);
   const int status = fsync(descriptor);
   close(descriptor);
-  if (status != 0) fail("cannot flush", file);
+  if (status != 0) fail("cannot flush " + file);
 }
 
 // The part, and what writers put beside it: "name.part12" and "name.part12.lock", but no
@@ -60,44 +60,6 @@ std::string followed(const std::string& target) {
     file = file.parent_path() / std::filesystem::read_symlink(file, error);
   }
   return file.string();
-}
-
-}  // namespace
-
-AtomicFile::AtomicFile(const std::string& target, long tag)
-    : target_(followed(target)), part_(fmt::format("{}.part{}", target_, tag)) {}
-
-// MPI leaves a lock beside the part where a disk was full.
-AtomicFile::~AtomicFile() {
-  if (!committed_) remove_with_companions(part_);
-}
-
-void AtomicFile::commit() {
-  flush_to_disk(part_);
-  std::error_code error;
-  if (std::filesystem::exists(target_, error) &&
-      !std::filesystem::is_regular_file(target_, error)) {
-    errno = EINVAL;  // a device or a pipe would be gone
-    fail("cannot replace", target_);
-  }
-  if (std::rename(part_.c_str(), target_.c_str()) != 0) fail("cannot write", target_);
-  committed_ = true;
-}
-
-void write_text(const std::string& target, const std::string& text) {
-  AtomicFile file(target, getpid());
-  std::FILE* stream = std::fopen(file.part().c_str(), "wb");
-  if (stream == nullptr) fail("cannot write", target);
-  const bool written = std::fwrite(text.data(), 1, text.size(), stream) == text.size();
-  const bool closed = std::fclose(stream) == 0;
-  if (!written || !closed) fail("cannot write", target);
-  file.commit();
-}
-
-namespace {
-
-[[noreturn]] void fail(const char* what) {
-  throw SystemFailure(fmt::format("{}: {}", what, std::strerror(errno)));
 }
 
 // How the child ends shows a fault: no handler and no core file is wanted.
@@ -133,7 +95,47 @@ std::string read_all(int in) {
   return text;
 }
 
+constexpr std::string_view kMember = R"(,"check":")";
+constexpr std::size_t kDigits = 16, kTail = kMember.size() + kDigits + 2;  // and the closing "}
+
+// CRC-64/XZ: against accidents, not against forgery.
+std::string checksum(const std::string& text) {
+  boost::crc_optimal<64, 0x42f0e1eba9ea3693, ~0ull, ~0ull, true, true> crc;
+  crc.process_bytes(text.data(), text.size());
+  return fmt::format("{:016x}", crc.checksum());
+}
+
 }  // namespace
+
+AtomicFile::AtomicFile(const std::string& target, long tag)
+    : target_(followed(target)), part_(fmt::format("{}.part{}", target_, tag)) {}
+
+// MPI leaves a lock beside the part where a disk was full.
+AtomicFile::~AtomicFile() {
+  if (!committed_) remove_with_companions(part_);
+}
+
+void AtomicFile::commit() {
+  flush_to_disk(part_);
+  std::error_code error;
+  if (std::filesystem::exists(target_, error) &&
+      !std::filesystem::is_regular_file(target_, error)) {
+    errno = EINVAL;  // a device or a pipe would be gone
+    fail("cannot replace " + target_);
+  }
+  if (std::rename(part_.c_str(), target_.c_str()) != 0) fail("cannot write " + target_);
+  committed_ = true;
+}
+
+void write_text(const std::string& target, const std::string& text) {
+  AtomicFile file(target, getpid());
+  std::FILE* stream = std::fopen(file.part().c_str(), "wb");
+  if (stream == nullptr) fail("cannot write " + target);
+  const bool written = std::fwrite(text.data(), 1, text.size(), stream) == text.size();
+  const bool closed = std::fclose(stream) == 0;
+  if (!written || !closed) fail("cannot write " + target);
+  file.commit();
+}
 
 std::optional<std::string> isolated(const std::function<std::string()>& work, unsigned seconds) {
   std::array<int, 2> ends{};
@@ -150,20 +152,6 @@ std::optional<std::string> isolated(const std::function<std::string()>& work, un
   const bool done = WIFEXITED(status) && WEXITSTATUS(status) == 0;
   return done ? std::optional(std::move(text)) : std::nullopt;
 }
-
-namespace {
-
-constexpr std::string_view kMember = R"(,"check":")";
-constexpr std::size_t kDigits = 16, kTail = kMember.size() + kDigits + 2;  // and the closing "}
-
-// CRC-64/XZ: against accidents, not against forgery.
-std::string checksum(const std::string& text) {
-  boost::crc_optimal<64, 0x42f0e1eba9ea3693, ~0ull, ~0ull, true, true> crc;
-  crc.process_bytes(text.data(), text.size());
-  return fmt::format("{:016x}", crc.checksum());
-}
-
-}  // namespace
 
 std::string sealed(const std::string& object) {
   if (!object.ends_with('}')) throw std::invalid_argument("only an object can be sealed");

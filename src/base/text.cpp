@@ -9,7 +9,6 @@
 #include <fstream>
 #include <numeric>
 #include <stdexcept>
-#include <string>
 
 namespace stickslip {
 namespace {
@@ -28,6 +27,30 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
     }
   }
   return rows.back().back();
+}
+
+// Decimal exponent of x when it is printed with so many digits after the first.
+int exponent(double x, int digits) {
+  const std::string text = fmt::format("{:.{}e}", x, digits);
+  return std::stoi(text.substr(text.find('e') + 1));
+}
+
+// first:last:count[:log]; nothing if the parts make no sense.
+std::optional<std::vector<double>> parse_range(const std::vector<std::string>& parts) {
+  const bool log = parts.size() == 4 && parts[3] == "log";
+  if (parts.size() != 3 && !log) return std::nullopt;
+  const auto first = parse_number(parts[0]), last = parse_number(parts[1]),
+             count = parse_number(parts[2]);
+  constexpr double most = 1e6;
+  if (!first || !last || !count || *count != std::floor(*count)) return std::nullopt;
+  if (*count < 2 || *count > most || !(*first < *last) || (log && *first <= 0)) return std::nullopt;
+  std::vector<double> values;
+  for (int n = 0; n < *count; ++n) {
+    const double t = n / (*count - 1);
+    values.push_back(log ? *first * std::pow(*last / *first, t) : *first + t * (*last - *first));
+  }
+  values.back() = *last;
+  return values;
 }
 
 }  // namespace
@@ -106,34 +129,6 @@ std::string wrap(std::string_view text, std::size_t width, std::size_t indent) {
   }
   return result;
 }
-
-namespace {
-
-// Decimal exponent of x when it is printed with so many digits after the first.
-int exponent(double x, int digits) {
-  const std::string text = fmt::format("{:.{}e}", x, digits);
-  return std::stoi(text.substr(text.find('e') + 1));
-}
-
-// first:last:count[:log]; nothing if the parts make no sense.
-std::optional<std::vector<double>> parse_range(const std::vector<std::string>& parts) {
-  const bool log = parts.size() == 4 && parts[3] == "log";
-  if (parts.size() != 3 && !log) return std::nullopt;
-  const auto first = parse_number(parts[0]), last = parse_number(parts[1]),
-             count = parse_number(parts[2]);
-  constexpr double most = 1e6;
-  if (!first || !last || !count || *count != std::floor(*count)) return std::nullopt;
-  if (*count < 2 || *count > most || !(*first < *last) || (log && *first <= 0)) return std::nullopt;
-  std::vector<double> values;
-  for (int n = 0; n < *count; ++n) {
-    const double t = n / (*count - 1);
-    values.push_back(log ? *first * std::pow(*last / *first, t) : *first + t * (*last - *first));
-  }
-  values.back() = *last;
-  return values;
-}
-
-}  // namespace
 
 std::string number_text(double value, double error) {
   constexpr int all = 16;      // digits after the first that tell every double from its neighbours

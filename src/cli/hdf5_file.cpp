@@ -13,7 +13,6 @@
 #include <utility>
 
 #include "stickslip/base/errors.hpp"
-#include "stickslip/base/files.hpp"
 #include "stickslip/cli/output.hpp"
 #include "stickslip/linalg/session.hpp"
 

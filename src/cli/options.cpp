@@ -14,7 +14,6 @@
 #include "stickslip/case/entry.hpp"
 #include "stickslip/cli/output.hpp"
 #include "stickslip/linalg/solver_options.hpp"
-#include "stickslip/model/effect.hpp"
 
 namespace stickslip::cli {
 namespace {
@@ -266,6 +265,12 @@ std::vector<Option> output_options() {
   return options;
 }
 
+std::string suggestion_for_word(const Option& option, const std::string& word) {
+  const std::string meant = meant_word(option, word);
+  if (meant.empty()) return "";
+  return suggested(meant, synonyms_of(word, option.name));
+}
+
 void check_words(const Option& option, const std::string& value, Problems& problems) {
   const auto given = option.kind == Kind::list ? split(value, ',')
                      : option.adds             ? split(value, '+')
@@ -385,12 +390,6 @@ std::string suggestion_for_option(const std::string& name) {
   const std::string meant = meant_option(name);
   if (meant.empty()) return "-help lists all";
   return suggested(meant, synonyms_of(name, ""));
-}
-
-std::string suggestion_for_word(const Option& option, const std::string& word) {
-  const std::string meant = meant_word(option, word);
-  if (meant.empty()) return "";
-  return suggested(meant, synonyms_of(word, option.name));
 }
 
 std::string meant_word(const Option& option, const std::string& word) {

@@ -3,7 +3,6 @@
 
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "stickslip/cli/options.hpp"
@@ -53,9 +52,6 @@ template <class Value, std::size_t N>
 
 // request.cpp
 
-/// The quantities and their arguments, for the model and the method that the request holds already.
-void read_question(Settings& settings, Request& request);
-
 /// The words of -quantities. With a given force, trajectory is its motion.
 [[nodiscard]] std::vector<std::string> asked_quantities(const Settings& settings);
 
@@ -71,9 +67,6 @@ void check_rules(Settings& settings, Request& request);
 
 /// The run that the settings ask for; what is wrong with it is added to their problems.
 [[nodiscard]] Request request_of(Settings& settings);
-
-/// Words on the line that are neither an option nor the value of one; PETSc would ignore them.
-void check_stray_words(const std::vector<std::string>& argv, Problems& problems);
 
 // sweep.cpp
 

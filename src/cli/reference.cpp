@@ -13,8 +13,8 @@
 #include <libfccp/csv.h>
 
 #include "stickslip/base/files.hpp"
-#include "stickslip/base/statistics.hpp"
 #include "stickslip/base/text.hpp"
+#include "stickslip/base/uncertain.hpp"
 #include "stickslip/case/entry.hpp"
 #include "stickslip/cli/hdf5_file.hpp"
 #include "stickslip/cli/output.hpp"
@@ -63,8 +63,7 @@ std::vector<Reference> references_of(const std::string& text, const char* form) 
   std::vector<Reference> all;
   try {
     auto results = results_of(Json::parse(text).at("results"));
-    std::sort(results.begin(), results.end(),
-              [](const auto& a, const auto& b) { return a.key < b.key; });
+    std::ranges::sort(results, {}, &quantities::Result::key);
     for (auto& result : results) append(std::move(result), all);
   } catch (const Json::exception& problem) {
     throw std::invalid_argument(

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "stickslip/base/statistics.hpp"
 #include "stickslip/base/text.hpp"
+#include "stickslip/base/uncertain.hpp"
 #include "stickslip/model/effect.hpp"
 #include "stickslip/model/process.hpp"
 

@@ -500,8 +500,7 @@ void check_solver_options(Problems& problems) {
   }
 }
 
-}  // namespace
-
+// Words on the line that are neither an option nor the value of one; PETSc would ignore them.
 void check_stray_words(const std::vector<std::string>& argv, Problems& problems) {
   for (std::size_t n = 0; n < argv.size(); ++n) {
     const bool is_value = n > 0 && is_option_name(argv[n - 1]);
@@ -517,6 +516,33 @@ void check_stray_words(const std::vector<std::string>& argv, Problems& problems)
                                              : "options look like -name value"));
   }
 }
+
+// The quantities and their arguments, for the model and the method that the request holds already.
+void read_question(Settings& settings, Request& request) {
+  Question& question = request.question;
+  question.references = read_compared(settings);
+  read_quantities(settings, request);
+  const auto& known = question.references;
+  for (const auto* argument : cases::arguments()) {
+    question.set_values(std::string(argument->option), values_of(*argument, settings, known));
+  }
+  question.observables = read_observables(settings, request.scene.friction);
+  question.accuracy = settings.real("accuracy");
+  question.accuracy_given = settings.has("accuracy");
+  if (!question.accuracy_given) {
+    question.accuracy = std::max(question.accuracy, question.usual_accuracy());
+  }
+  question.horizon = settings.real("horizon");
+  check_horizon(settings, request);
+  question.passage = meaning(kPassages, settings.text("passage"));
+  check_speeds(settings, request);
+  if (!settings.sound()) return;  // the others look at states of the model
+  read_starts(settings, request);
+  check_passages(settings, question);
+  examine_observables(settings, request);
+}
+
+}  // namespace
 
 void shield_formulas(std::vector<std::string>& argv) {
   for (std::size_t n = 1; n < argv.size(); ++n) {
@@ -548,30 +574,6 @@ std::vector<std::string> asked_quantities(const Settings& settings) {
                          std::string(cases::kGivenForce.word));
   }
   return words;
-}
-
-void read_question(Settings& settings, Request& request) {
-  Question& question = request.question;
-  question.references = read_compared(settings);
-  read_quantities(settings, request);
-  const auto& known = question.references;
-  for (const auto* argument : cases::arguments()) {
-    question.set_values(std::string(argument->option), values_of(*argument, settings, known));
-  }
-  question.observables = read_observables(settings, request.scene.friction);
-  question.accuracy = settings.real("accuracy");
-  question.accuracy_given = settings.has("accuracy");
-  if (!question.accuracy_given) {
-    question.accuracy = std::max(question.accuracy, question.usual_accuracy());
-  }
-  question.horizon = settings.real("horizon");
-  check_horizon(settings, request);
-  question.passage = meaning(kPassages, settings.text("passage"));
-  check_speeds(settings, request);
-  if (!settings.sound()) return;  // the others look at states of the model
-  read_starts(settings, request);
-  check_passages(settings, question);
-  examine_observables(settings, request);
 }
 
 Files read_files(const Settings& settings) {

@@ -8,7 +8,6 @@
 #include "stickslip/case/displacement_rows.hpp"
 #include "stickslip/case/duration_rows.hpp"
 #include "stickslip/case/force_rows.hpp"
-#include "stickslip/case/spectrum_rows.hpp"
 #include "stickslip/cli/output.hpp"
 #include "stickslip/model/effect.hpp"
 #include "stickslip/simulation/walk.hpp"

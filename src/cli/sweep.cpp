@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <mpi.h>
 #include <nlohmann/json.hpp>
 #include <petscsys.h>
 #include <unistd.h>
@@ -12,13 +11,10 @@
 #include <cstring>
 #include <exception>
 #include <fstream>
-#include <map>
 #include <memory>
 #include <optional>
 #include <sstream>
 #include <stdexcept>
-#include <string>
-#include <utility>
 
 #include "reading.hpp"
 #include "stickslip/base/errors.hpp"
@@ -178,8 +174,7 @@ std::vector<std::string> check_points(Sweep& sweep, Problems& problems) {
 }
 
 bool is_axis(const std::vector<SweepAxis>& axes, const std::string& name) {
-  return std::any_of(axes.begin(), axes.end(),
-                     [&name](const SweepAxis& axis) { return axis.option == name; });
+  return std::ranges::find(axes, name, &SweepAxis::option) != axes.end();
 }
 
 // Options of the output change no number, and the checkpoint is the file that holds this.
@@ -202,51 +197,46 @@ std::vector<std::pair<std::string, std::string>> identity_of(const Settings& set
   return identity;
 }
 
-// A number that all ranks count up, each value given once.
-
+/// A number that all ranks count up, each value given once.
+///
 /// Lives in the memory of rank 0, which takes no part when others count (one-sided MPI). Not to be
 /// copied; construction and destruction are collective. When it dies while an exception unwinds,
 /// the window is left to MPI_Abort, since the other ranks would never join.
 class SharedCounter {
  public:
-  explicit SharedCounter(MPI_Comm comm);
-  ~SharedCounter();
+  explicit SharedCounter(MPI_Comm comm) {
+    if (linalg::ranks(comm) == 1) return;
+    const MPI_Aint size = linalg::rank(comm) == 0 ? sizeof(long) : 0;
+    MPI_Win_allocate(size, sizeof(long), MPI_INFO_NULL, comm, static_cast<void*>(&value_),
+                     &window_);
+    MPI_Win_lock_all(0, window_);
+    if (size > 0) *value_ = 0;
+    MPI_Win_sync(window_);
+    MPI_Barrier(comm);
+  }
+  ~SharedCounter() {
+    if (window_ == MPI_WIN_NULL || std::uncaught_exceptions() > 0) return;
+    MPI_Win_unlock_all(window_);
+    MPI_Win_free(&window_);
+  }
   SharedCounter(const SharedCounter&) = delete;
   SharedCounter& operator=(const SharedCounter&) = delete;
 
   /// 0, 1, 2, ...: the value before it is counted up. Not collective.
-  [[nodiscard]] long next();
+  [[nodiscard]] long next() {
+    if (window_ == MPI_WIN_NULL) return alone_++;
+    const long one = 1;
+    long before = 0;
+    MPI_Fetch_and_op(&one, &before, MPI_LONG, 0, 0, MPI_SUM, window_);
+    MPI_Win_flush(0, window_);
+    return before;
+  }
 
  private:
   MPI_Win window_ = MPI_WIN_NULL;  // none on one rank
   long* value_ = nullptr;          // of rank 0
   long alone_ = 0;
 };
-
-SharedCounter::SharedCounter(MPI_Comm comm) {
-  if (linalg::ranks(comm) == 1) return;
-  const MPI_Aint size = linalg::rank(comm) == 0 ? sizeof(long) : 0;
-  MPI_Win_allocate(size, sizeof(long), MPI_INFO_NULL, comm, static_cast<void*>(&value_), &window_);
-  MPI_Win_lock_all(0, window_);
-  if (size > 0) *value_ = 0;
-  MPI_Win_sync(window_);
-  MPI_Barrier(comm);
-}
-
-SharedCounter::~SharedCounter() {
-  if (window_ == MPI_WIN_NULL || std::uncaught_exceptions() > 0) return;
-  MPI_Win_unlock_all(window_);
-  MPI_Win_free(&window_);
-}
-
-long SharedCounter::next() {
-  if (window_ == MPI_WIN_NULL) return alone_++;
-  const long one = 1;
-  long before = 0;
-  MPI_Fetch_and_op(&one, &before, MPI_LONG, 0, 0, MPI_SUM, window_);
-  MPI_Win_flush(0, window_);
-  return before;
-}
 
 // In the order of Status.
 constexpr const char* kStatuses[] = {"reached", "not reached", "failed", "no memory", "refused"};
@@ -280,6 +270,22 @@ Json outcome_of(MPI_Comm comm, const cases::Case& given, std::size_t point) {
     json["cost"]["seconds"] = linalg::wall_seconds() - start;
     return json;
   }
+}
+
+// Computes a point on its own; failures of solvers and of memory become its status. Collective.
+// Throws what is no stickslip::Failure.
+SweepPoint compute_run(MPI_Comm comm, const Request& given, std::size_t point) {
+  Json json = outcome_of(comm, given, point);
+  json["warnings"] = given.warnings;
+  return read_run(json.dump());
+}
+
+// A point at which the model cannot be computed.
+SweepPoint refused_run(std::size_t point, const std::string& reason) {
+  Json json = head(point, Status::refused, reason);
+  json["scene"] = json["results"] = Json::object();
+  json["cost"]["seconds"] = 0;
+  return read_run(json.dump());
 }
 
 constexpr int kTag = 7;           // of the only messages between single ranks
@@ -506,8 +512,7 @@ Request Sweep::request(std::size_t point) const {
 }
 
 bool sweeps(const Settings& settings) {
-  const auto options = all_options();
-  return std::any_of(options.begin(), options.end(), [&settings](const Option& option) {
+  return std::ranges::any_of(all_options(), [&settings](const Option& option) {
     return swept_by(option) != nullptr && settings.has(option.name);
   });
 }
@@ -536,19 +541,6 @@ Request read_sweep(Settings settings) {
 }
 
 const char* status_text(Status status) { return kStatuses[static_cast<std::size_t>(status)]; }
-
-SweepPoint compute_run(MPI_Comm comm, const Request& given, std::size_t point) {
-  Json json = outcome_of(comm, given, point);
-  json["warnings"] = given.warnings;
-  return read_run(json.dump());
-}
-
-SweepPoint refused_run(std::size_t point, const std::string& reason) {
-  Json json = head(point, Status::refused, reason);
-  json["scene"] = json["results"] = Json::object();
-  json["cost"]["seconds"] = 0;
-  return read_run(json.dump());
-}
 
 SweepPoint read_run(std::string entry) {
   const Json json = Json::parse(entry);

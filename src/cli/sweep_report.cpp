@@ -39,8 +39,7 @@ std::vector<Column> columns_of(const std::vector<SweepPoint>& runs) {
   const auto put = [&](const SweepPoint& run, const Result& r, const std::string& part,
                        auto values) {
     const std::string name = r.key + part;
-    auto found = std::find_if(columns.begin(), columns.end(),
-                              [&](const Column& column) { return column.name == name; });
+    auto found = std::ranges::find(columns, name, &Column::name);
     if (found == columns.end()) {
       found = columns.insert(found, {&r, name, std::vector<std::vector<double>>(points)});
     }
@@ -195,9 +194,7 @@ std::string shortfalls(const Sweep& sweep, const std::vector<SweepPoint>& runs) 
 }
 
 std::string counts(const SweepResult& result, const RunTimes& times) {
-  const auto reached =
-      std::count_if(result.runs.begin(), result.runs.end(),
-                    [](const SweepPoint& run) { return run.status == Status::reached; });
+  const auto reached = std::ranges::count(result.runs, Status::reached, &SweepPoint::status);
   std::string text =
       fmt::format("{} of {} points reached the accuracy; ", reached, result.runs.size());
   if (result.resumed > 0) text += fmt::format("{} from the checkpoint; ", result.resumed);

@@ -33,6 +33,20 @@
 namespace stickslip::linalg {
 namespace {
 
+// Ranks of this run on this machine. The first call is collective on MPI_COMM_WORLD; Session makes
+// it.
+int ranks_on_node() {
+  static const int ranks = [] {
+    MPI_Comm node = MPI_COMM_NULL;
+    MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &node);
+    int count = 1;
+    MPI_Comm_size(node, &count);
+    MPI_Comm_free(&node);
+    return count;
+  }();
+  return ranks;
+}
+
 constexpr double kUnlimited = kInfinity;
 
 // The value of a line "Name:  12345 kB" in a file of /proc, in bytes.
@@ -210,24 +224,26 @@ PetscErrorCode start(int& count, char**& values) {
   throw PetscFailure(code, "PETSc cannot start");
 }
 
+// Makes OpenBLAS take its work space now: at its first use it would try for ever where there is
+// none. Throws NoMemory if a limit of the address space leaves too little.
+void take_blas_space() {
+  const double left = left_in_address_space();
+  if (left < kBlasSpace) {
+    throw NoMemory(
+        "the limit of the address space (ulimit -v) leaves no memory for linear algebra; "
+        "raise it");
+  }
+  PetscScalar one = 1;
+  PetscBLASInt size = 1, pivot = 0, info = 0;
+  LAPACKgetrf_(&size, &size, &one, &size, &pivot, &info);
+}
+
 }  // namespace
 
 double left_in_address_space() {
   rlimit limit{};
   if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return kUnlimited;
   return static_cast<double>(limit.rlim_cur) - proc_value("/proc/self/status", "VmSize");
-}
-
-int ranks_on_node() {
-  static const int ranks = [] {
-    MPI_Comm node = MPI_COMM_NULL;
-    MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &node);
-    int count = 1;
-    MPI_Comm_size(node, &count);
-    MPI_Comm_free(&node);
-    return count;
-  }();
-  return ranks;
 }
 
 double available_bytes(MPI_Comm comm, double wanted) {
@@ -242,18 +258,6 @@ double peak_resident_bytes() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   return 1024.0 * static_cast<double>(usage.ru_maxrss);
-}
-
-void take_blas_space() {
-  const double left = left_in_address_space();
-  if (left < kBlasSpace) {
-    throw NoMemory(
-        "the limit of the address space (ulimit -v) leaves no memory for linear algebra; "
-        "raise it");
-  }
-  PetscScalar one = 1;
-  PetscBLASInt size = 1, pivot = 0, info = 0;
-  LAPACKgetrf_(&size, &size, &one, &size, &pivot, &info);
 }
 
 Blas loaded_blas() {
@@ -330,8 +334,6 @@ Failure failure_in_flight() {
   }
 }
 
-void collect_error_messages() { check(PetscPushErrorHandler(append_message, nullptr)); }
-
 Session::Session(int& argc, char**& argv) : arguments_(argv, argv + argc) {
   shorten_start_of_single_process();
   static char skip_petscrc[] = "-skip_petscrc";
@@ -339,7 +341,7 @@ Session::Session(int& argc, char**& argv) : arguments_(argv, argv + argc) {
   arguments_.push_back(nullptr);
   int count = argc + 1;
   char** values = arguments_.data();
-  collect_error_messages();
+  check(PetscPushErrorHandler(append_message, nullptr));  // into the text of the next failure
   const PetscErrorCode code = start(count, values);
   if (code != 0) refuse_start(code);
   list_no_options_at_the_end();

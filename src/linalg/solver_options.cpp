@@ -58,8 +58,8 @@ const SolverRole* role_of(const std::string& name) {
 bool is_read_later(const std::string& name) {
   const SolverRole* role = role_of(name);
   const auto names = split(role == nullptr ? "" : role->read_later, ' ');
-  return std::any_of(names.begin(), names.end(),
-                     [&](const std::string& later) { return name == role->prefix + later; });
+  return std::ranges::any_of(names,
+                             [&](const auto& later) { return name == role->prefix + later; });
 }
 
 // The option of a role that the user may have meant, without the dash; empty if there is none.

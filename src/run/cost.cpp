@@ -4,7 +4,7 @@
 #include <functional>
 #include <map>
 
-#include "stickslip/base/statistics.hpp"
+#include "stickslip/base/uncertain.hpp"
 #include "stickslip/run/campaign.hpp"
 #include "stickslip/run/study.hpp"
 #include "studies.hpp"
@@ -86,16 +86,10 @@ class CostStudy {
   [[nodiscard]] int upwind_steps() const { return context_.study.steps.value_or(7); }
   void announce(const std::string& what) { context_.report(++number_, count_, what); }
 
-  [[nodiscard]] static cases::Case hp_case(const cases::Case& given) {
-    cases::Case hp = given;
-    hp.method = {};
-    return hp;
-  }
-
   // Finer than every point that is compared with it, in degree and in layers.
   quantities::Results reference() {
     announce("reference");
-    const auto given = hp_case(context_.given);
+    const auto given = by_scheme(context_.given, cases::Scheme::hp);
     auto resolution = hp_resolution(given.scene, kFinestDegree, 0, 1e-18);
     resolution.layers += 2;
     return scalars(solve_on(context_.comm, given, resolution).evaluation.results);
@@ -119,19 +113,14 @@ class CostStudy {
 
   void hp() {
     Curve curve{"hp", "degree", {}};
-    const auto given = hp_case(context_.given);
+    const auto given = by_scheme(context_.given, cases::Scheme::hp);
     for (int degree = kFirstDegree; degree <= kLastDegree; ++degree) {
       announce(fmt::format("hp, degree {}", degree));
       const auto resolution =
           hp_resolution(given.scene, degree, 0, std::max(std::pow(10.0, -(degree + 3)), 1e-18));
       Run run = median_run(repeats_, [&] {
-        return attempted(context_.comm, {"hp", {{"degree", degree}, {"layers", resolution.layers}}},
-                         [&](Run& found) {
-                           auto [evaluation, step] = solve_on(context_.comm, given, resolution);
-                           found.results = scalars(evaluation.results);
-                           found.seconds = step.seconds;
-                           found.statistics = step.statistics;
-                         });
+        return solved_on(context_.comm, {"hp", {{"degree", degree}, {"layers", resolution.layers}}},
+                         given, resolution);
       });
       set_errors(reference_, run.results);
       add(curve, run, degree, error_of(run.results));

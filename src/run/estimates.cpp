@@ -7,11 +7,12 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <limits>
 #include <numeric>
 #include <optional>
 
-#include "stickslip/base/statistics.hpp"
+#include "stickslip/base/uncertain.hpp"
 
 namespace stickslip::run {
 namespace {
@@ -160,8 +161,7 @@ std::string wrong_way(const Result& result, int direction) {
   std::vector<std::size_t> order(result.value.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::erase_if(order, [&](std::size_t n) { return quantities::is_unreached(result, n); });
-  std::sort(order.begin(), order.end(),
-            [&](std::size_t a, std::size_t b) { return result.abscissa[a] < result.abscissa[b]; });
+  std::ranges::sort(order, {}, [&](std::size_t n) { return result.abscissa[n]; });
   for (std::size_t n = 1; n < order.size(); ++n) {
     const std::size_t a = order[n - 1], b = order[n];
     const double step = direction * (result.value[b] - result.value[a]);
@@ -224,9 +224,7 @@ void judge(Comparison& comparison) {
   auto& rows = comparison.rows;
   std::vector<std::size_t> order(rows.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return std::abs(rows[a].z) > std::abs(rows[b].z);
-  });
+  std::ranges::sort(order, std::greater<>(), [&](std::size_t n) { return std::abs(rows[n].z); });
   bool rejecting = true;
   for (std::size_t n = 0; n < order.size(); ++n) {
     Compared& row = rows[order[n]];

@@ -20,9 +20,6 @@ struct Context {
   }
 };
 
-[[nodiscard]] Study study_points(const Context& context);
-[[nodiscard]] Study study_steps(const Context& context);
-[[nodiscard]] Study study_white_noise(const Context& context);
 [[nodiscard]] Study study_heuristic(const Context& context);
 [[nodiscard]] Study study_cost(const Context& context);
 
@@ -46,8 +43,11 @@ constexpr double kUpwindTail = 1e-9;
 /// Throws NoMemory if that run would not fit: no study computes for long only to end there.
 void require_upwind_memory(const Context& context, const cases::Case& given, int points,
                            double tail = kUpwindTail);
-/// Has a run found its results; where that fails it has none, and says why.
-[[nodiscard]] Run attempted(MPI_Comm comm, Run run, const std::function<void(Run&)>& find);
+/// The case with a scheme, and without choices of the discretisation made by hand.
+[[nodiscard]] cases::Case by_scheme(const cases::Case& given, cases::Scheme scheme);
+/// Has a run found its results on one discretisation; where that fails it has none, and says why.
+[[nodiscard]] Run solved_on(MPI_Comm comm, Run run, const cases::Case& given,
+                            const Resolution& resolution);
 /// Refined hp.
 [[nodiscard]] Run converged_run(const Context& context, const cases::Case& given, double accuracy);
 

@@ -52,8 +52,6 @@ std::string conclusion(const Table& table, const quantities::Result& converged) 
                      number_text(converged.value[0], converged.error[0]), converged.error[0]);
 }
 
-}  // namespace
-
 Study study_points(const Context& context) {
   Study study;
   study.kind = "p";
@@ -75,8 +73,6 @@ Study study_points(const Context& context) {
   study.runs.push_back(converged);
   return study;
 }
-
-namespace {
 
 using Samples = std::span<const Sample>;
 
@@ -134,46 +130,6 @@ Uncertain by_observed_order(Samples samples, double order) {
   const double now = from_two(samples[n - 2], samples[n - 1], order);
   return {now, std::abs(now - from_two(samples[n - 3], samples[n - 2], before))};
 }
-
-}  // namespace
-
-// (a - b)/(b - c) = (d_a^q - d_b^q)/(d_b^q - d_c^q).
-double observed_order(Samples samples) {
-  if (samples.size() < 3) return kNone;
-  const Samples last = samples.last(3);
-  const Sample &a = last[0], &b = last[1], &c = last[2];
-  const double ratio = (a.value - b.value) / (b.value - c.value);
-  const auto defect = [&](double q) {
-    return std::log(gap(a.at, b.at, q) / gap(b.at, c.at, q)) - std::log(ratio);
-  };
-  constexpr double low = 0.05, high = 8;
-  const bool changes = std::abs(b.value - c.value) > b.error + c.error;
-  if (!changes || !(ratio > 0) || !(defect(low) * defect(high) <= 0)) return kNone;
-  std::uintmax_t iterations = 100;
-  const auto root = boost::math::tools::toms748_solve(
-      defect, low, high, boost::math::tools::eps_tolerance<double>(40), iterations);
-  return root.first;
-}
-
-Uncertain limit_of(Samples samples, double order, bool grazing) {
-  if (std::isnan(order)) return {kNone, kNone};
-  double first_power = 1;
-  if (grazing) first_power = order < 1.75 ? 1.5 : 2;
-  if (std::abs(order - first_power) > 0.25) return by_observed_order(samples, order);
-  return best_through(samples, first_power, grazing ? 0.5 : 1, false);
-}
-
-Uncertain limit_in_half_powers(Samples samples) {
-  const Uncertain none{kNone, kNone};
-  if (samples.size() < 3) return none;
-  const Samples last = samples.last(3);
-  const double before = std::abs(last[1].value - last[0].value),
-               change = std::abs(last[2].value - last[1].value);
-  if (change > before + last[0].error + 2 * last[1].error + last[2].error) return none;
-  return best_through(samples, 0.5, 0.5, true);
-}
-
-namespace {
 
 /// A parameter that falls, the cases at its values, and how limits follow from orders.
 struct Series {
@@ -323,14 +279,17 @@ Study study_of(const Context& context, const std::vector<Series>& all) {
   return study;
 }
 
-cases::Case upwind_case(const cases::Case& given) {
-  cases::Case upwind = given;
-  upwind.method = {};
-  upwind.method.scheme = cases::Scheme::upwind;
-  return upwind;
+// Has a run found its results; where that fails it has none, and says why.
+Run attempted(MPI_Comm comm, Run run, const std::function<void(Run&)>& find) {
+  try {
+    find(run);
+  } catch (...) {
+    const Failure failure = linalg::failure_in_flight();
+    if (linalg::ranks(comm) > 1) throw;  // of which one may fail alone
+    run.failure = failure.what();
+  }
+  return run;
 }
-
-}  // namespace
 
 Study study_steps(const Context& context) {
   return study_of(context,
@@ -338,6 +297,44 @@ Study study_steps(const Context& context) {
 }
 
 Study study_white_noise(const Context& context) { return study_of(context, {of_tau(context)}); }
+
+}  // namespace
+
+// (a - b)/(b - c) = (d_a^q - d_b^q)/(d_b^q - d_c^q).
+double observed_order(Samples samples) {
+  if (samples.size() < 3) return kNone;
+  const Samples last = samples.last(3);
+  const Sample &a = last[0], &b = last[1], &c = last[2];
+  const double ratio = (a.value - b.value) / (b.value - c.value);
+  const auto defect = [&](double q) {
+    return std::log(gap(a.at, b.at, q) / gap(b.at, c.at, q)) - std::log(ratio);
+  };
+  constexpr double low = 0.05, high = 8;
+  const bool changes = std::abs(b.value - c.value) > b.error + c.error;
+  if (!changes || !(ratio > 0) || !(defect(low) * defect(high) <= 0)) return kNone;
+  std::uintmax_t iterations = 100;
+  const auto root = boost::math::tools::toms748_solve(
+      defect, low, high, boost::math::tools::eps_tolerance<double>(40), iterations);
+  return root.first;
+}
+
+Uncertain limit_of(Samples samples, double order, bool grazing) {
+  if (std::isnan(order)) return {kNone, kNone};
+  double first_power = 1;
+  if (grazing) first_power = order < 1.75 ? 1.5 : 2;
+  if (std::abs(order - first_power) > 0.25) return by_observed_order(samples, order);
+  return best_through(samples, first_power, grazing ? 0.5 : 1, false);
+}
+
+Uncertain limit_in_half_powers(Samples samples) {
+  const Uncertain none{kNone, kNone};
+  if (samples.size() < 3) return none;
+  const Samples last = samples.last(3);
+  const double before = std::abs(last[1].value - last[0].value),
+               change = std::abs(last[2].value - last[1].value);
+  if (change > before + last[0].error + 2 * last[1].error + last[2].error) return none;
+  return best_through(samples, 0.5, 0.5, true);
+}
 
 Study run_study(MPI_Comm comm, const cases::Case& given, const StudyOptions& study,
                 const StudyProgress& progress) {
@@ -396,6 +393,12 @@ void set_errors(const quantities::Results& known, quantities::Results& results) 
   }
 }
 
+cases::Case by_scheme(const cases::Case& given, cases::Scheme scheme) {
+  cases::Case other = given;
+  other.method = {.scheme = scheme};
+  return other;
+}
+
 cases::Case with_delta(const cases::Case& given, double delta) {
   cases::Case other = given;
   other.scene.delta = delta;
@@ -407,7 +410,7 @@ cases::Case with_delta(const cases::Case& given, double delta) {
 
 void require_upwind_memory(const Context& context, const cases::Case& given, int points,
                            double tail) {
-  const auto upwind = upwind_case(given);
+  const auto upwind = by_scheme(given, cases::Scheme::upwind);
   try {
     require_memory(context.comm, upwind.scene, upwind_resolution(upwind.scene, points, tail));
   } catch (const NoMemory& lack) {
@@ -417,32 +420,23 @@ void require_upwind_memory(const Context& context, const cases::Case& given, int
   }
 }
 
-Run attempted(MPI_Comm comm, Run run, const std::function<void(Run&)>& find) {
-  try {
-    find(run);
-  } catch (...) {
-    const Failure failure = linalg::failure_in_flight();
-    if (linalg::ranks(comm) > 1) throw;  // of which one may fail alone
-    run.failure = failure.what();
-  }
-  return run;
+Run solved_on(MPI_Comm comm, Run run, const cases::Case& given, const Resolution& resolution) {
+  return attempted(comm, std::move(run), [&](Run& found) {
+    auto [evaluation, step] = solve_on(comm, given, resolution);
+    found.results = scalars(evaluation.results);
+    found.seconds = step.seconds;
+    found.statistics = step.statistics;
+  });
 }
 
 Run upwind_run(const Context& context, const cases::Case& given, int points, double tail) {
-  const auto upwind = upwind_case(given);
-  return attempted(context.comm, {"upwind", {{"delta", upwind.scene.delta}, {"p", points}}},
-                   [&](Run& run) {
-                     const auto resolution = upwind_resolution(upwind.scene, points, tail);
-                     auto [evaluation, step] = solve_on(context.comm, upwind, resolution);
-                     run.results = scalars(evaluation.results);
-                     run.seconds = step.seconds;
-                     run.statistics = step.statistics;
-                   });
+  const auto upwind = by_scheme(given, cases::Scheme::upwind);
+  return solved_on(context.comm, {"upwind", {{"delta", upwind.scene.delta}, {"p", points}}}, upwind,
+                   upwind_resolution(upwind.scene, points, tail));
 }
 
 Run converged_run(const Context& context, const cases::Case& given, double accuracy) {
-  cases::Case hp = given;
-  hp.method = {};
+  auto hp = by_scheme(given, cases::Scheme::hp);
   hp.question.accuracy = accuracy;
   return attempted(context.comm, {"hp", {{"delta", hp.scene.delta}, {"accuracy", accuracy}}},
                    [&](Run& run) {

@@ -5,8 +5,8 @@
 #include <array>
 #include <cmath>
 
-#include "stickslip/base/statistics.hpp"
 #include "stickslip/base/text.hpp"
+#include "stickslip/base/uncertain.hpp"
 
 namespace stickslip::simulation {
 

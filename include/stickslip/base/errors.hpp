@@ -29,28 +29,20 @@ class Failure : public std::runtime_error {
   ExitStatus status_;
 };
 
+/// One that always ends in the same status.
+template <ExitStatus ends_in>
+class FailureOf : public Failure {
+ public:
+  explicit FailureOf(const std::string& message) : Failure(ends_in, message) {}
+};
+
 /// The input is wrong; the message names option, value, range and fix. Thrown before any solve.
-class BadInput : public Failure {
- public:
-  explicit BadInput(const std::string& message) : Failure(ExitStatus::bad_input, message) {}
-};
-
+using BadInput = FailureOf<ExitStatus::bad_input>;
 /// A solver failed, or no discretisation reaches what was asked for.
-class NotReached : public Failure {
- public:
-  explicit NotReached(const std::string& message) : Failure(ExitStatus::not_reached, message) {}
-};
-
+using NotReached = FailureOf<ExitStatus::not_reached>;
 /// The problem does not fit in memory; thrown before the memory is taken.
-class NoMemory : public Failure {
- public:
-  explicit NoMemory(const std::string& message) : Failure(ExitStatus::no_memory, message) {}
-};
-
+using NoMemory = FailureOf<ExitStatus::no_memory>;
 /// The machine refused: a file cannot be written, a process not be started.
-class SystemFailure : public Failure {
- public:
-  explicit SystemFailure(const std::string& message) : Failure(ExitStatus::other, message) {}
-};
+using SystemFailure = FailureOf<ExitStatus::other>;
 
 }  // namespace stickslip

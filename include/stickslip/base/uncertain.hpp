@@ -1,5 +1,5 @@
 #pragma once
-/// A number that carries a bound for its error through arithmetic.
+/// A number that carries a bound for its error through arithmetic, and intervals.
 
 #include <cmath>
 #include <limits>
@@ -32,5 +32,8 @@ inline constexpr Uncertain kNoValue{std::numeric_limits<double>::quiet_NaN(),
 [[nodiscard]] inline Uncertain operator*(double factor, Uncertain a) {
   return {factor * a.value, std::abs(factor) * a.error};
 }
+
+/// Half the width of a two-sided 95 % confidence interval in standard deviations, printed as 1.96.
+inline constexpr double kNormalQuantile = 1.959963984540054;
 
 }  // namespace stickslip

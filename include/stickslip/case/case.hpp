@@ -26,8 +26,6 @@ enum class Scheme { hp, upwind, none };
 /// `own`: what fits the discretisation, element by element or by MUMPS in memory.
 enum class Factors { own, elements, in_memory, on_disk, incomplete };
 
-/// How functions of time are computed.
-
 /// How the spectrum is computed.
 enum class SpectrumSolver { krylov, direct };
 
@@ -80,8 +78,7 @@ struct Question {
   }
   /// Whether anything asked for depends on the option (a name without dash).
   [[nodiscard]] bool depends_on(std::string_view option) const {
-    const auto all = entries();
-    return std::any_of(all.begin(), all.end(), [&](const Entry* entry) {
+    return std::ranges::any_of(entries(), [&](const Entry* entry) {
       return wants(entry->quantity) && entry->takes(option);
     });
   }

@@ -77,9 +77,6 @@ struct Synonyms {
 /// of a result means the quantity that it belongs to.
 [[nodiscard]] std::string meant_word(const Option& option, const std::string& word);
 
-/// "did you mean ou?", of a word that the option does not have; empty if none is near.
-[[nodiscard]] std::string suggestion_for_word(const Option& option, const std::string& word);
-
 /// "scene.opts:3" by the names of options (without dash) that count as files of -options_file state
 /// them.
 [[nodiscard]] std::map<std::string, std::string>& stated_places();

@@ -75,13 +75,6 @@ struct SweepPoint {
   std::string entry;  ///< the same and scene, warnings, accuracy, cost, plan: an entry of `runs`
 };
 
-/// Computes a point on its own; failures of solvers and of memory become its status. Collective.
-/// Throws what is no stickslip::Failure.
-[[nodiscard]] SweepPoint compute_run(MPI_Comm comm, const Request& given, std::size_t point);
-
-/// A point at which the model cannot be computed, for the reason given. Local.
-[[nodiscard]] SweepPoint refused_run(std::size_t point, const std::string& reason);
-
 /// The run of an entry of `runs`, JSON in one line. Throws std::exception, nlohmann's too, if it is
 /// none.
 [[nodiscard]] SweepPoint read_run(std::string entry);

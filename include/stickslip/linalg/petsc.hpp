@@ -46,7 +46,4 @@ template <class F>
 /// foresaw, as errors of libraries, asks for a report. Called in a catch block.
 [[nodiscard]] Failure failure_in_flight();
 
-/// Routes PETSc's error reports into the text of the next PetscFailure. Called once by Session.
-void collect_error_messages();
-
 }  // namespace stickslip::linalg

@@ -24,10 +24,6 @@ inline constexpr const char* kFactorsTooLarge =
 /// Bytes that the limit of the address space (ulimit -v) leaves this process; infinity without one.
 [[nodiscard]] double left_in_address_space();
 
-/// Ranks of this run on this machine. The first call is collective on MPI_COMM_WORLD; Session makes
-/// it.
-int ranks_on_node();
-
 /// Largest resident size of this process so far [bytes].
 [[nodiscard]] double peak_resident_bytes();
 
@@ -50,10 +46,6 @@ void restart_with_one_blas_thread(char** arguments);
 /// Keeps an OpenBLAS to one thread unless the environment names a number: the blocks of these
 /// factorisations are too small to gain from threads, and ranks share the cores.
 void keep_blas_to_one_thread();
-
-/// Makes OpenBLAS take its work space now: at its first use it would try for ever where there is
-/// none. Throws NoMemory if a limit of the address space leaves too little.
-void take_blas_space();
 
 /// Operations a second of a matrix product of the size of the fronts that occur here, measured in
 /// a few milliseconds on the calling process.
