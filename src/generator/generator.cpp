@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <map>
-#include <utility>
 
 #include "row_assembler.hpp"
 #include "stickslip/linalg/session.hpp"
@@ -53,8 +51,7 @@ std::string broken_promise(const LocalRows& rows, Promise promise) {
   return "";
 }
 
-}  // namespace
-
+// Composes the data on a matrix. Not collective.
 void attach(Mat matrix, Shared data) {
   const auto object = reinterpret_cast<PetscObject>(matrix);
   PetscContainer container = nullptr;
@@ -64,6 +61,8 @@ void attach(Mat matrix, Shared data) {
   check(PetscObjectCompose(object, kName, reinterpret_cast<PetscObject>(container)));
   check(PetscContainerDestroy(&container));
 }
+
+}  // namespace
 
 Shared data_of(Mat matrix) {
   PetscObject found = nullptr;

@@ -50,10 +50,7 @@ bool serves_elements(const KolmogorovOperator& a) {
 }
 
 double norm(const ComplexVector& x) {
-  PetscReal real = 0, imaginary = 0;
-  check(VecNorm(x.real, NORM_2, &real));
-  check(VecNorm(x.imaginary, NORM_2, &imaginary));
-  return std::hypot(real, imaginary);
+  return std::hypot(linalg::norm(x.real, NORM_2), linalg::norm(x.imaginary, NORM_2));
 }
 
 // The factors of a ComplexSolver, of one kind and of the other.
@@ -276,8 +273,10 @@ KolmogorovOperator Systems::assembled(const SystemKey& key) {
     return assemble(comm_, discretisation, key.shift(), key.symmetry, key.static_phase,
                     statistics_);
   };
-  if (key.passage) return of(discretisation_.passing(key.speed_limit, key.passage));
-  if (!std::isinf(key.speed_limit)) return of(discretisation_.killing_at(key.speed_limit));
+  if (!std::isinf(key.speed_limit)) {
+    return of(discretisation_.cut_at(key.speed_limit, key.passage.has_value(),
+                                     key.passage.value_or(model::Passage::both)));
+  }
   KolmogorovOperator a = of(discretisation_);
   const bool singular = key.lambda == 0 && key.static_phase == StaticPhase::killing;
   if (singular && !process().sticks()) a.kill_in_one_state();

@@ -15,25 +15,19 @@
 namespace stickslip::generator {
 
 // Functions of the noise are not smooth on the levels that do not move at that speed.
-std::shared_ptr<const Nodes> Discretisation::nodes_for(double speed) const {
+Discretisation Discretisation::cut_at(double speed, bool beyond,
+                                      std::optional<model::Passage> killed) const {
   const auto standing = [speed](const model::Process& branch) {
     return branch.friction.at_rest() - branch.bias - branch.drag(speed);
   };
   Grouping grouping = noise->grouping();
   grouping.special = {standing(process), -standing(process.mirrored())};
-  return std::make_shared<Nodes>(process, grouping);
-}
-
-Discretisation Discretisation::killing_at(double speed) const {
-  return {process, velocities->killing_at(speed), nodes_for(speed)};
-}
-
-Discretisation Discretisation::passing(double speed, std::optional<model::Passage> killed) const {
   const auto kills = [killed](model::Passage side) {
     return killed == side || killed == model::Passage::both;
   };
   const bool up = kills(model::Passage::up), down = kills(model::Passage::down);
-  return {process, velocities->passing(speed, up, down), nodes_for(speed)};
+  return {process, velocities->cut_at(speed, beyond, up, down),
+          std::make_shared<Nodes>(process, grouping)};
 }
 
 namespace {
@@ -62,16 +56,6 @@ void require_countable(double states) {
                              8 * sizeof(PetscInt)));
 }
 
-// Of {-(last-1) ... -first, first ... last-1} in [lowest, highest], those below n.
-int below_in_pairs(int first, int last, int lowest, int highest, int n) {
-  const auto below = [&](int from, int to) {
-    from = std::max(from, lowest);
-    to = std::min(to, highest);
-    return std::clamp(n - from, 0, std::max(to - from + 1, 0));
-  };
-  return below(1 - last, -std::max(first, 1)) + below(first, last - 1);
-}
-
 }  // namespace
 
 StateSpace::Side::Side(const model::Process& process, const Nodes& noise,
@@ -97,11 +81,10 @@ StateSpace::StateSpace(MPI_Comm comm, const Discretisation& discretisation, Symm
   require_countable(discretisation.noise->count() * (2.0 * nodes_ + 2) +
                     discretisation.process.noise.count());
   distribute(*discretisation.noise, discretisation.process.noise);
-  const Block& block = blocks_[rank_];
   for (int n = first_; n <= last_; ++n) {
-    if (std::abs(n) >= block.first && std::abs(n) < block.last) local_noise_.push_back(n);
+    if (owner_of_pair_[std::abs(n)] == rank_) local_noise_.push_back(n);
   }
-  local_size_ = size(block);
+  local_size_ = size(blocks_[rank_]);
 }
 
 // A group goes to the rank in whose equal share of the nodes it begins, and takes its levels along.
@@ -109,23 +92,32 @@ StateSpace::StateSpace(MPI_Comm comm, const Discretisation& discretisation, Symm
 void StateSpace::distribute(const Nodes& noise, const model::NoiseChain& chain) {
   const std::int64_t ranks = linalg::ranks(comm_), all = noise.count();
   const bool together = !chain.symmetric() && !noise.all_levels();
-  const int pairs = std::max(-first_, last_), levels = std::max(-chain.lowest(), chain.highest());
-  const auto innermost = [&](int pair) {
-    return noise.all_levels() ? pair : noise.group_of(pair).begin;
-  };
+  const int pairs = std::max(-first_, last_);
   for (int pair = 0; pair <= pairs; ++pair) {
-    const std::int64_t before = together || pair == 0 ? 0 : 2LL * innermost(pair) - 1;
+    const int begin = together || noise.all_levels() ? pair : noise.group_of(pair).begin;
+    const std::int64_t before = together || pair == 0 ? 0 : 2LL * begin - 1;
     owner_of_pair_.push_back(static_cast<int>(std::min(before * ranks / all, ranks - 1)));
   }
-  int first = 0, first_static = 0;
-  for (int r = 0; r < ranks; ++r) {
-    int last = first, last_static = levels + 1;
-    while (last <= pairs && owner_of_pair_[last] == r) ++last;
-    if (last <= pairs) last_static = noise.all_levels() ? last : noise.group_of(last).first;
-    blocks_.push_back({first, last, first_static, last_static, global_size_});
-    global_size_ += size(blocks_.back());
-    first = last;
-    first_static = last_static;
+  blocks_.resize(static_cast<std::size_t>(ranks));
+  for (int n = first_; n <= last_; ++n) {
+    Block& block = blocks_[owner_of_pair_[std::abs(n)]];
+    place_.push_back(block.nodes++);
+    block.upper_origins += has_origin(Branch::positive, n) ? 1 : 0;
+    block.upper_holding += has_holding(Branch::positive, n) ? 1 : 0;
+    if (symmetry_reduced()) continue;
+    block.lower_origins += has_origin(Branch::negative, -n) ? 1 : 0;
+    block.lower_holding += has_holding(Branch::negative, -n) ? 1 : 0;
+  }
+  for (int i = lowest_static_; with_static_states_ && i <= highest_static_; ++i) {
+    const int level = std::abs(i), pair = noise.all_levels() ? level
+                                          : together         ? 0
+                                                             : noise.group_at(level).begin;
+    owner_of_static_.push_back(owner_of_pair_[pair]);
+    static_place_.push_back(blocks_[owner_of_static_.back()].at_rest++);
+  }
+  for (Block& block : blocks_) {
+    block.begin = global_size_;
+    global_size_ += size(block);
   }
 }
 
@@ -148,74 +140,10 @@ State StateSpace::state_at(int row, int n) const {
   return {StateKind::holding, branch, along, 0};
 }
 
-int StateSpace::owner_of_static_level(int level) const {
-  const auto after =
-      std::partition_point(blocks_.begin(), blocks_.end(), [level](const Block& block) {
-        return block.last_static <= std::abs(level);
-      });
-  return static_cast<int>(after - blocks_.begin());
-}
-
-int StateSpace::nodes_below(const Block& block, int n) const {
-  return below_in_pairs(block.first, block.last, first_, last_, n);
-}
-
-// Static states of a rank below a level.
-int StateSpace::static_levels_below(const Block& block, int level) const {
-  if (!with_static_states_) return 0;
-  return below_in_pairs(block.first_static, block.last_static, lowest_static_, highest_static_,
-                        level);
-}
-
-// Number of states of a row of a rank before a state: at v = 0 origins of the negative branch,
-// static states, origins of the positive branch.
-int StateSpace::position(const Block& block, int row, const State& state) const {
-  const auto below = [&](int n) { return nodes_below(block, n); };
-  const int n = state.branch == Branch::positive ? state.noise : -state.noise;
-  const int first_lower = -lower_.last_static, first_upper = upper_.last_static + 1;
-  const int lower_origins = keeps_origin_ && !symmetry_reduced() ? below(first_lower) : 0;
-  switch (state.kind) {
-  case StateKind::node: return below(n);
-  case StateKind::holding:
-    // The highest nodes of a branch: on the negative one, the lowest of the noise.
-    return row > 0 ? below(n) - below(upper_.first_holding) : below(n);
-  case StateKind::static_phase: return lower_origins + static_levels_below(block, state.noise);
-  case StateKind::origin: break;
-  }
-  if (state.branch == Branch::negative) return below(n);
-  const int at_rest = static_levels_below(block, highest_static_ + 1);
-  return lower_origins + at_rest + below(n) - below(first_upper);
-}
-
-int StateSpace::size_at_zero(const Block& block) const {
-  int count = static_levels_below(block, highest_static_ + 1);
-  if (!keeps_origin_) return count;
-  const int all = nodes_below(block, last_ + 1);
-  if (!symmetry_reduced()) count += nodes_below(block, -lower_.last_static);
-  return count + all - nodes_below(block, upper_.last_static + 1);
-}
-
-int StateSpace::count(const Block& block, int row) const {
-  const int all = nodes_below(block, last_ + 1);
-  if (row == 0) return size_at_zero(block);
-  if (std::abs(row) <= nodes_) return all;
-  if (row > 0) return all - nodes_below(block, upper_.first_holding);
-  return nodes_below(block, 1 - lower_.first_holding);
-}
-
-PetscInt StateSpace::row_offset(const Block& block, int row) const {
-  const PetscInt node_row = nodes_below(block, last_ + 1);
-  PetscInt offset = 0;
-  if (!symmetry_reduced()) {
-    if (row > -last_row()) offset += count(block, -last_row());
-    offset += node_row * (std::clamp(row, -nodes_, 0) + nodes_);
-  }
-  if (row > 0) offset += count(block, 0) + node_row * (std::min(row, nodes_ + 1) - 1);
-  return offset;
-}
-
 PetscInt StateSpace::size(const Block& block) const {
-  return row_offset(block, last_row()) + count(block, last_row());
+  const PetscInt sliding = static_cast<PetscInt>(block.nodes) * nodes_;
+  return (symmetry_reduced() ? 1 : 2) * sliding + block.lower_holding + block.lower_origins +
+         block.at_rest + block.upper_origins + block.upper_holding;
 }
 
 StateSpace::NodeLine StateSpace::nodes_of(Branch branch, int noise) const {
@@ -223,15 +151,28 @@ StateSpace::NodeLine StateSpace::nodes_of(Branch branch, int noise) const {
   return {first, nodes_ > 1 ? index({StateKind::node, branch, noise, 1}) - first : 0};
 }
 
+// By velocity: holding states and nodes of the negative branch; at v = 0 its origins, static
+// states, origins of the positive branch; nodes and holding states of that. Not all noise nodes
+// have origins and holding states, but on the negative branch the lowest ones and on the positive
+// the highest.
 PetscInt StateSpace::index(const State& state) const {
-  const int sign = state.branch == Branch::positive ? 1 : -1;
-  const int owner = state.kind == StateKind::static_phase ? owner_of_static_level(state.noise)
-                                                          : owner_of_pair_[std::abs(state.noise)];
-  const Block& block = blocks_[owner];
-  int row = 0;
-  if (state.kind == StateKind::node) row = sign * (state.node + 1);
-  if (state.kind == StateKind::holding) row = sign * last_row();
-  return block.begin + row_offset(block, row) + position(block, row, state);
+  const bool upper = state.branch == Branch::positive,
+             rests = state.kind == StateKind::static_phase;
+  const int n = upper ? state.noise : -state.noise, place = rests ? 0 : place_[n - first_];
+  const Block& block =
+      blocks_[rests ? owner_of_static_[n - lowest_static_] : owner_of_pair_[std::abs(n)]];
+  const PetscInt nodes = block.nodes, sliding = nodes * nodes_,
+                 zero = block.begin + (symmetry_reduced() ? 0 : block.lower_holding + sliding),
+                 above = zero + block.lower_origins + block.at_rest + block.upper_origins;
+  switch (state.kind) {
+  case StateKind::static_phase:
+    return zero + block.lower_origins + static_place_[n - lowest_static_];
+  case StateKind::origin: return place + (upper ? above - nodes : zero);
+  case StateKind::holding:
+    return place + (upper ? above + sliding - nodes + block.upper_holding : block.begin);
+  case StateKind::node: break;
+  }
+  return place + (upper ? above + nodes * state.node : zero - nodes * (state.node + 1));
 }
 
 }  // namespace stickslip::generator

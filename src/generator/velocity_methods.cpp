@@ -74,7 +74,8 @@ HpDiscretisation::HpDiscretisation(const std::vector<double>& ends, int degree,
 
 HpDiscretisation::HpDiscretisation(std::vector<double> ends, const std::vector<int>& degrees,
                                    const model::Drag& drag)
-    : ends_(std::move(ends)), drag_(drag) {
+    : VelocityDiscretisation(drag) {
+  ends_ = std::move(ends);
   if (ends_.size() < 2 || ends_.front() != 0 || !std::is_sorted(ends_.begin(), ends_.end())) {
     throw std::invalid_argument("element ends must rise from 0");
   }
@@ -87,12 +88,10 @@ HpDiscretisation::HpDiscretisation(std::vector<double> ends, const std::vector<i
     const double length = ends_[e + 1] - ends_[e];
     elements_.push_back({reference, static_cast<int>(nodes_.size()), length});
     for (int m = 0; m < reference->size; ++m) {
-      nodes_.push_back(ends_[e] + length * reference->node[m]);
-      weights_.push_back(length * reference->weight[m]);
+      add_node(ends_[e] + length * reference->node[m], length * reference->weight[m]);
       element_of_.push_back(e);
     }
   }
-  for (double v : nodes_) drag_at_nodes_.push_back(drag(v));
   for (double v : ends_) drag_at_ends_.push_back(drag(v));
 }
 
@@ -119,17 +118,12 @@ std::pair<std::vector<double>, std::vector<int>> HpDiscretisation::below(double 
   return {std::move(ends), std::move(degrees)};
 }
 
-std::unique_ptr<VelocityDiscretisation> HpDiscretisation::up_to(double speed) const {
-  auto [ends, degrees] = below(speed);
-  return std::make_unique<HpDiscretisation>(std::move(ends), degrees, drag_);
-}
-
 // Beyond the speed the elements are those there were, but for a sliver.
-std::unique_ptr<VelocityDiscretisation> HpDiscretisation::split_at(double speed) const {
+std::unique_ptr<VelocityDiscretisation> HpDiscretisation::split(double speed, bool beyond) const {
   constexpr double sliver = 0.2;
   auto [ends, degrees] = below(speed);
   const int below_speed = static_cast<int>(degrees.size()) - 1;
-  for (int e = 0; e < elements(); ++e) {
+  for (int e = 0; e < elements() && beyond; ++e) {
     const bool last = e + 1 == elements();
     if (ends_[e + 1] <= speed) continue;
     if (!last && ends_[e + 1] - speed < sliver * (ends_[e + 2] - ends_[e + 1])) continue;
@@ -249,27 +243,21 @@ double HpDiscretisation::mass_below(std::span<const double> mass, double v) cons
 }
 
 UpwindDiscretisation::UpwindDiscretisation(double spacing, int count, const model::Drag& drag)
-    : spacing_(spacing), drag_(drag) {
+    : VelocityDiscretisation(drag), spacing_(spacing) {
   if (!(spacing > 0) || count < 1)
     throw std::invalid_argument("upwind velocity discretisation without nodes");
-  cells_.push_back(0);
+  ends_.push_back(0);
   for (int j = 1; j <= count; ++j) {
-    nodes_.push_back(j * spacing);
-    weights_.push_back(spacing);
-    cells_.push_back((j + 0.5) * spacing);
-    drag_at_nodes_.push_back(drag(nodes_.back()));
+    add_node(j * spacing, spacing);
+    ends_.push_back((j + 0.5) * spacing);
   }
 }
 
-std::unique_ptr<VelocityDiscretisation> UpwindDiscretisation::up_to(double speed) const {
-  const int steps = std::max(2, static_cast<int>(std::lround(speed / spacing_)));
-  return std::make_unique<UpwindDiscretisation>(speed / steps, steps - 1, drag_);
-}
-
-std::unique_ptr<VelocityDiscretisation> UpwindDiscretisation::split_at(double speed) const {
+std::unique_ptr<VelocityDiscretisation> UpwindDiscretisation::split(double speed,
+                                                                    bool beyond) const {
   const int steps = std::max(2, static_cast<int>(std::lround(speed / spacing_)));
   const double spacing = speed / steps;
-  const int all = static_cast<int>(std::lround(v_max() / spacing));
+  const int all = beyond ? static_cast<int>(std::lround(v_max() / spacing)) : 0;
   auto split = std::make_unique<UpwindDiscretisation>(spacing, std::max(steps - 1, all), drag_);
   split->end_at_speed(steps - 2);
   return split;

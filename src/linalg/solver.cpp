@@ -236,13 +236,10 @@ PetscErrorCode collect_help(FILE* /*file*/, const char format[], va_list values)
 double BackwardError::forward(Vec residual, Vec b, Vec x) {
   if (magnitude_ == nullptr) magnitude_ = magnitudes(matrix_);
   const VecHandle size = absolute(x), bound = absolute(b);
-  PetscReal largest = 0, error = 0;
-  check(VecNorm(x, NORM_INFINITY, &largest));
-  check(VecShift(size, kNegligible * largest));
+  check(VecShift(size, kNegligible * norm(x, NORM_INFINITY)));
   check(MatMultAdd(magnitude_, size, bound, bound));
   check(VecPointwiseDivide(residual, residual, bound));  // 0/0 counts as 0 in PETSc
-  check(VecNorm(residual, NORM_INFINITY, &error));
-  return error;
+  return norm(residual, NORM_INFINITY);
 }
 
 // The sum of |A|^T |x| takes the sums of the rows of |A| alone.
@@ -250,10 +247,8 @@ double BackwardError::transposed(Vec residual, Vec b, Vec x) {
   if (magnitude_sums_ == nullptr) magnitude_sums_ = magnitude_sums(matrix_);
   const VecHandle size = absolute(x);
   PetscScalar visits = 0;
-  PetscReal error = 0, b_size = 0;
   check(VecTDot(magnitude_sums_, size, &visits));
-  check(VecNorm(b, NORM_1, &b_size));
-  check(VecNorm(residual, NORM_1, &error));
+  const double error = norm(residual, NORM_1), b_size = norm(b, NORM_1);
   return error == 0 ? 0 : error / (PetscRealPart(visits) + b_size);
 }
 

@@ -57,9 +57,7 @@ linalg::VecHandle start_on(const KolmogorovOperator& a, const model::Start& star
 
 bool counts(Vec functional) {
   constexpr double rounding = 1e-15;
-  PetscReal largest = 0;
-  check(VecNorm(functional, NORM_INFINITY, &largest));
-  return largest > rounding;
+  return linalg::norm(functional, NORM_INFINITY) > rounding;
 }
 
 std::vector<Uncertain> autocorrelation(generator::Systems& systems,
@@ -87,10 +85,9 @@ Expectation expectation(generator::Systems& systems, const StationaryDistributio
     const auto part = generator::part_of(f, even ? Symmetry::even : symmetry);
     const bool rough = f.formula != nullptr;
     const linalg::VecHandle b = a.values(part, rough);
-    const linalg::VecHandle pi = distribution.occupation_on(a), square = a.zeros();
+    const linalg::VecHandle pi = distribution.occupation_on(a);
     check(VecScale(pi, 1 / distribution.excursion().mean_excursion()));
-    check(VecPointwiseMult(square, b, b));
-    const double unit = std::sqrt(std::abs(dot(pi, square)));
+    const double unit = std::sqrt(std::abs(dot(pi, linalg::product(b, b))));
     const double overlooked = std::abs(dot(pi, a.overlooked(part)));
     unseen += overlooked;
     if (symmetry != Symmetry::odd) {

@@ -168,7 +168,8 @@ struct StartingPoint {
 // without killing.
 StartingPoint stationary_start(generator::Systems& systems, double speed,
                                const KolmogorovOperator& a) {
-  generator::Systems whole(systems.comm(), systems.discretisation().passing(speed, std::nullopt),
+  generator::Systems whole(systems.comm(),
+                           systems.discretisation().cut_at(speed, true, std::nullopt),
                            systems.statistics());
   const StationaryDistribution law(whole);
   const auto& states = law.states();
@@ -230,6 +231,24 @@ double spread(const StartingPoint& start, Vec m, const ByLevel& at_rest, double 
   return sum;
 }
 
+// The reason of entries without a value: speeds that are reached so rarely that rounding is all
+// there is.
+void name_too_rare(Result& result) {
+  if (!all_numbers(result)) {
+    result.unreached = "is beyond double precision, being too rare; leave that entry out";
+  }
+}
+
+// Appends one of the numbers of each speed of -velocity as an array.
+template <class Passage>
+void append_by_speed(const Computation& computation, const Row& row,
+                     const std::vector<Passage>& passages, Uncertain Passage::*member) {
+  Result result = array(row, computation.question().velocity);
+  for (const auto& passage : passages) append_value(result, passage.*member);
+  name_too_rare(result);
+  computation.results().push_back(std::move(result));
+}
+
 // The systems of a passage of `speed` as asked for: with symmetry |V| has that of one branch;
 // passages of V itself need both.
 generator::SystemKey passage_system(const Planner& planner, double speed) {
@@ -253,66 +272,6 @@ Task passage_task(const Planner& planner, const char* name, const generator::Sys
   if (task.adaptive) task.usual_factorizations = 1, task.usual_solves = planner.starts();
   return task;
 }
-
-}  // namespace
-
-PassageTime passage_time(generator::Systems& systems, const generator::SystemKey& key,
-                         const model::Start& start) {
-  auto& system = systems.at(key);
-  const KolmogorovOperator& a = system.a();
-  const StickingPhases sticking = sticking_phases(systems.process(), key.symmetry);
-  const StartingPoint first = starting_point(systems, key.speed_limit, start, a, sticking);
-  const linalg::VecHandle before = inside(a, key);
-  const auto nu = occupations_from(system, sticking.starts, linalg::product(first.sliding, before));
-  const UntilPassage until(a, sticking, first.at_rest, nu, &linalg::Solution::x),
-      roughly(a, sticking, first.at_rest, nu, &linalg::Solution::correction);
-  double reached = 0, rounding = 0;
-  for (std::size_t t = 0; t < nu.size(); ++t) {
-    reached += until.reached()[t];
-    rounding += std::abs(until.reached()[t] - roughly.reached()[t]);
-  }
-  if (!(reached > 2 * rounding)) return {kNoValue, kNoValue};
-  const auto one = a.values([](double, double, double) { return 1.0; });
-  const auto time = until.integral(one, sticking.each(1));
-  const linalg::VecHandle source = a.from_static({time.at_rest.begin(), time.at_rest.end()});
-  check(VecAXPY(source, 1, one));
-  const linalg::Solution m = system.factors().solve(source);
-  check(VecAYPX(m.correction, -1, m.x));
-  const auto variance = [&](const UntilPassage& by, Vec on) {
-    const auto field = a.square_field(on, time.at_rest);
-    const auto paths =
-        by.integral(field, sticking.square_field(time.at_rest, time.at_starts)).overall;
-    if (start.kind == model::Start::Kind::state) return paths;
-    const linalg::VecHandle to_come = linalg::product(on, before);
-    return paths + spread(first, to_come, time.at_rest, time.overall);
-  };
-  return {changed_from(roughly.integral(one, sticking.each(1)).overall, time.overall),
-          changed_from(variance(roughly, m.correction), variance(until, m.x))};
-}
-
-void first_passage_tasks(Planner& planner) {
-  planner.resolve_speeds();
-  const auto& start = planner.question().start;
-  const auto found =
-      planner.collect<PassageTime>([](const Computation& computation, const auto& all) {
-        append_by_speed(computation, cases::kPassageMean, all, &PassageTime::mean);
-        append_by_speed(computation, cases::kPassageVariance, all, &PassageTime::variance);
-      });
-  for (double speed : planner.question().velocity) {
-    const auto key = passage_system(planner, speed);
-    const auto find = [=, start = start](Computation& computation) {
-      found->push_back(computation.value_or(PassageTime{kNoValue, kNoValue}, [&] {
-        return passage_time(computation.systems, key, start);
-      }));
-    };
-    Task task = passage_task(planner, "passage time", key);
-    task.uses = {{key, 0, starts_in(planner, key) + 1}, {key, 1, 0}};
-    task.carry_out = find;
-    planner.add(std::move(task));
-  }
-}
-
-namespace {
 
 // The probability that a start is beyond the speed.
 double passed(const StartingPoint& first, const KolmogorovOperator& a,
@@ -410,6 +369,62 @@ Result of_speed(const Row& row, const std::vector<double>& abscissa, double spee
 
 }  // namespace
 
+PassageTime passage_time(generator::Systems& systems, const generator::SystemKey& key,
+                         const model::Start& start) {
+  auto& system = systems.at(key);
+  const KolmogorovOperator& a = system.a();
+  const StickingPhases sticking = sticking_phases(systems.process(), key.symmetry);
+  const StartingPoint first = starting_point(systems, key.speed_limit, start, a, sticking);
+  const linalg::VecHandle before = inside(a, key);
+  const auto nu = occupations_from(system, sticking.starts, linalg::product(first.sliding, before));
+  const UntilPassage until(a, sticking, first.at_rest, nu, &linalg::Solution::x),
+      roughly(a, sticking, first.at_rest, nu, &linalg::Solution::correction);
+  double reached = 0, rounding = 0;
+  for (std::size_t t = 0; t < nu.size(); ++t) {
+    reached += until.reached()[t];
+    rounding += std::abs(until.reached()[t] - roughly.reached()[t]);
+  }
+  if (!(reached > 2 * rounding)) return {kNoValue, kNoValue};
+  const auto one = a.values([](double, double, double) { return 1.0; });
+  const auto time = until.integral(one, sticking.each(1));
+  const linalg::VecHandle source = a.from_static({time.at_rest.begin(), time.at_rest.end()});
+  check(VecAXPY(source, 1, one));
+  const linalg::Solution m = system.factors().solve(source);
+  check(VecAYPX(m.correction, -1, m.x));
+  const auto variance = [&](const UntilPassage& by, Vec on) {
+    const auto field = a.square_field(on, time.at_rest);
+    const auto paths =
+        by.integral(field, sticking.square_field(time.at_rest, time.at_starts)).overall;
+    if (start.kind == model::Start::Kind::state) return paths;
+    const linalg::VecHandle to_come = linalg::product(on, before);
+    return paths + spread(first, to_come, time.at_rest, time.overall);
+  };
+  return {changed_from(roughly.integral(one, sticking.each(1)).overall, time.overall),
+          changed_from(variance(roughly, m.correction), variance(until, m.x))};
+}
+
+void first_passage_tasks(Planner& planner) {
+  planner.resolve_speeds();
+  const auto& start = planner.question().start;
+  const auto found =
+      planner.collect<PassageTime>([](const Computation& computation, const auto& all) {
+        append_by_speed(computation, cases::kPassageMean, all, &PassageTime::mean);
+        append_by_speed(computation, cases::kPassageVariance, all, &PassageTime::variance);
+      });
+  for (double speed : planner.question().velocity) {
+    const auto key = passage_system(planner, speed);
+    const auto find = [=, start = start](Computation& computation) {
+      found->push_back(computation.value_or(PassageTime{kNoValue, kNoValue}, [&] {
+        return passage_time(computation.systems, key, start);
+      }));
+    };
+    Task task = passage_task(planner, "passage time", key);
+    task.uses = {{key, 0, starts_in(planner, key) + 1}, {key, 1, 0}};
+    task.carry_out = find;
+    planner.add(std::move(task));
+  }
+}
+
 std::vector<Uncertain> passage_transform(generator::Systems& systems, generator::SystemKey key,
                                          const model::Start& start,
                                          const std::vector<double>& lambda) {
@@ -437,7 +452,7 @@ DurationDistribution passage_distribution(generator::Systems& systems,
   const double mean = passage_time(systems, key, start).mean.value, w = key.speed_limit;
   const std::vector<Uncertain> too_rare(time.size(), kNoValue);
   if (!(mean > 0)) return {too_rare, too_rare};
-  generator::Systems killed(systems.comm(), systems.discretisation().passing(w, key.passage),
+  generator::Systems killed(systems.comm(), systems.discretisation().cut_at(w, true, key.passage),
                             systems.statistics());
   ProcessPencil pencil(killed, key.symmetry, StaticPhase::kept);
   const KolmogorovOperator &a = pencil.a(), &moving = systems.at(key).a();

@@ -101,17 +101,12 @@ std::vector<const Eigenpair*> chosen(const std::vector<Eigenpair>& pairs, Symmet
   std::vector<const Eigenpair*> kept;
   for (const auto& pair : pairs) kept.push_back(&pair);
   if (symmetry != Symmetry::odd) {
-    kept.erase(std::min_element(kept.begin(), kept.end(), [](const auto* a, const auto* b) {
-      return std::abs(a->value) < std::abs(b->value);
-    }));
+    kept.erase(
+        std::ranges::min_element(kept, {}, [](const auto* pair) { return std::abs(pair->value); }));
   }
-  kept.erase(std::remove_if(kept.begin(), kept.end(),
-                            [](const auto* pair) {
-                              return oscillates(pair->value) && pair->value.imag() < 0;
-                            }),
-             kept.end());
-  std::sort(kept.begin(), kept.end(),
-            [](const auto* a, const auto* b) { return a->value.real() < b->value.real(); });
+  std::erase_if(kept,
+                [](const auto* pair) { return oscillates(pair->value) && pair->value.imag() < 0; });
+  std::ranges::sort(kept, {}, [](const auto* pair) { return pair->value.real(); });
   if (2 * kept.size() > pairs.size()) kept.resize(pairs.size() / 2);
   return kept;
 }

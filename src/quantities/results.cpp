@@ -4,12 +4,6 @@
 
 namespace stickslip::quantities {
 
-namespace {
-
-constexpr double kVanishing = 1e-6;  // of the scale of a derivative
-
-}  // namespace
-
 double largest_size(const std::vector<double>& values) {
   double size = 0;
   for (double v : values) size = std::fmax(size, std::abs(v));
@@ -68,6 +62,7 @@ bool is_unreached(const Result& result, std::size_t n) {
 }
 
 double relative_error(const Result& result) {
+  constexpr double vanishing = 1e-6;  // of the scale of a derivative
   const double size = largest_size(result.value);
   double relative = 0;
   for (std::size_t n = 0; n < result.value.size(); ++n) {
@@ -77,8 +72,8 @@ double relative_error(const Result& result) {
     if (result.error[n] == 0) continue;
     double own = result.each_by_its_size ? std::abs(result.value[n]) : size;
     const double rare = size_of(result, n);
-    const bool vanishes = std::abs(result.value[n]) <= result.error[n] &&
-                          result.error[n] <= kVanishing * result.scale;
+    const bool vanishes =
+        std::abs(result.value[n]) <= result.error[n] && result.error[n] <= vanishing * result.scale;
     if (vanishes) own = result.scale;
     if (result.tails_by_their_size && rare < kTail && rare > kLeastTail) own = rare;
     relative = std::max(relative, result.error[n] / own);

@@ -198,12 +198,6 @@ std::vector<double> spread_odd(const std::vector<double>& upper) {
   return all;
 }
 
-PetscReal infinity_norm(Vec values) {
-  PetscReal size = 0;
-  linalg::check(VecNorm(values, NORM_INFINITY, &size));
-  return size;
-}
-
 Function one() {
   return [](double, double, double) { return 1.0; };
 }
@@ -250,8 +244,8 @@ class Sector {
     const linalg::VecHandle sliding = a.values(f);
     linalg::VecHandle overlooked = quadratic ? a.zeros() : a.overlooked(f);
     constexpr double rounding = 1e-12;
-    const double size = std::max<double>(infinity_norm(sliding), largest_size(rest));
-    if (infinity_norm(overlooked) <= rounding * size) overlooked = a.zeros();
+    const double size = std::max<double>(linalg::norm(sliding, NORM_INFINITY), largest_size(rest));
+    if (linalg::norm(overlooked, NORM_INFINITY) <= rounding * size) overlooked = a.zeros();
     std::vector<Uncertain> w;
     for (std::size_t t = 0; t < occupations_.size(); ++t) {
       const auto& nu = occupations_[t];
@@ -528,8 +522,7 @@ void append_resolvent(const std::vector<double>& lambda,
     of(cases::kWMinus, &ObservableTransforms::w_minus);
     // Beside averages it may not take their name.
     const std::string average = cases::kPi.key_of(f.name);
-    const bool taken = std::any_of(results.begin(), results.end(),
-                                   [&](const Result& r) { return r.key == average; });
+    const bool taken = std::ranges::find(results, average, &Result::key) != results.end();
     of(cases::kPiLambda, &ObservableTransforms::pi_lambda);
     if (!taken) results.back().key = average;
     of(cases::kMu, &ObservableTransforms::mu_lambda);

@@ -122,14 +122,11 @@ Integral integral(const StationaryDistribution& distribution, double defect,
     size += now[n] * std::abs(at_rest);
   }
   sum.stick.error = std::abs(change) + defect * size;
-  const linalg::VecHandle sliding = a.values(part, averaged), product = a.zeros();
-  linalg::check(VecPointwiseMult(product, sliding, distribution.occupation()));
-  PetscReal sliding_size = 0;
-  linalg::check(VecNorm(product, NORM_1, &sliding_size));
+  const linalg::VecHandle sliding = a.values(part, averaged);
   sum.slide.value = linalg::dot(sliding, distribution.occupation());
   sum.slide.error =
       std::abs(sum.slide.value - linalg::dot(sliding, distribution.uncorrected_occupation())) +
-      defect * sliding_size;
+      defect * linalg::norm(linalg::product(sliding, distribution.occupation()), NORM_1);
   if (!f.quadratic) {
     sum.slide.error += std::abs(linalg::dot(a.overlooked(part), distribution.occupation()));
   }

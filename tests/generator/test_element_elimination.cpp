@@ -163,7 +163,7 @@ TEST_CASE("element elimination: by the clock of path length, and killed at a spe
     check_solves(slow);
     for (double speed : {0.01, 0.4}) {
       for (StaticPhase static_phase : {StaticPhase::killing, StaticPhase::kept}) {
-        const auto below = c.on.killing_at(speed);
+        const auto below = c.on.cut_at(speed, false, model::Passage::both);
         check_solves({PETSC_COMM_WORLD, below, 0, c.symmetry, static_phase});
       }
     }

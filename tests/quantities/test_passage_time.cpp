@@ -65,7 +65,7 @@ TEST_CASE("passage time: a stationary start is the mean over all states") {
     for (const Passage passage : kPassages) {
       const double w = 0.4;
       generator::Systems split(PETSC_COMM_WORLD,
-                               solved.systems.discretisation().passing(w, std::nullopt),
+                               solved.systems.discretisation().cut_at(w, true, std::nullopt),
                                solved.statistics);
       const quantities::StationaryDistribution law(split);
       auto key = passage_key(solved.systems.process(), Passage::both, w);

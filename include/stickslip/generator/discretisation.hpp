@@ -20,19 +20,14 @@ struct Discretisation {
         noise(noise_nodes ? std::move(noise_nodes) : std::make_shared<Nodes>(process)),
         velocities(std::move(velocity_axis)) {}
 
-  /// The same up to |v| = speed, where the process is killed.
-  [[nodiscard]] Discretisation killing_at(double speed) const;
-  /// The same with elements that end at |v| = speed, where bodies that rise to it are killed: those
-  /// of a passage, or none.
-  [[nodiscard]] Discretisation passing(double speed, std::optional<model::Passage> killed) const;
+  /// The same with elements and groups that end where |v| = speed, and `beyond` or not: bodies that
+  /// rise to it are killed, those of a passage, or none.
+  [[nodiscard]] Discretisation cut_at(double speed, bool beyond,
+                                      std::optional<model::Passage> killed) const;
 
   model::Process process;
   std::shared_ptr<const Nodes> noise;
   std::shared_ptr<const VelocityDiscretisation> velocities;  ///< none for the fluid queue
-
- private:
-  // With groups that end where bodies do not move at that speed.
-  [[nodiscard]] std::shared_ptr<const Nodes> nodes_for(double speed) const;
 };
 
 }  // namespace stickslip::generator

@@ -29,9 +29,6 @@ struct MatrixData {
   Shift<PetscScalar> shift;
 };
 
-/// Composes the data on a matrix. Not collective.
-void attach(Mat matrix, std::shared_ptr<const MatrixData> data);
-
 /// The data of a matrix; null if it has none. Not collective.
 [[nodiscard]] std::shared_ptr<const MatrixData> data_of(Mat matrix);
 

@@ -132,11 +132,11 @@ class StateSpace {
     return branch == Branch::positive ? upper_ : lower_;
   }
 
-  // Level pairs {n, -n}, first <= n < last, of a rank, its static levels with first_static <= |i| <
-  // last_static, and its first global index.
+  // How many noise nodes a rank has, and how many states of other kinds; its first global index.
   struct Block {
-    int first, last, first_static, last_static;
-    PetscInt begin;
+    int nodes = 0, lower_holding = 0, lower_origins = 0, at_rest = 0;
+    int upper_origins = 0, upper_holding = 0;
+    PetscInt begin = 0;
   };
   void distribute(const Nodes& noise, const model::NoiseChain& chain);
 
@@ -148,8 +148,9 @@ class StateSpace {
       }
     }
     for (int i = lowest_static_; with_static_states_ && i <= highest_static_; ++i) {
-      if (owner_of_static_level(i) == rank_)
+      if (owner_of_static_[i - lowest_static_] == rank_) {
         visit(State{StateKind::static_phase, Branch::positive, i, 0});
+      }
     }
     for (int n : local_noise_) {
       if (has_origin(Branch::positive, n)) visit(State{StateKind::origin, Branch::positive, n, 0});
@@ -161,13 +162,6 @@ class StateSpace {
   [[nodiscard]] int first_row() const { return symmetry_reduced() ? 0 : -last_row(); }
   [[nodiscard]] bool has_state(int row, int n) const;
   [[nodiscard]] State state_at(int row, int n) const;
-  [[nodiscard]] int owner_of_static_level(int level) const;
-  [[nodiscard]] int nodes_below(const Block& block, int n) const;
-  [[nodiscard]] int static_levels_below(const Block& block, int level) const;
-  [[nodiscard]] int size_at_zero(const Block& block) const;
-  [[nodiscard]] int count(const Block& block, int row) const;
-  [[nodiscard]] int position(const Block& block, int row, const State& state) const;
-  [[nodiscard]] PetscInt row_offset(const Block& block, int row) const;
   [[nodiscard]] PetscInt size(const Block& block) const;
 
   MPI_Comm comm_;
@@ -177,8 +171,9 @@ class StateSpace {
   Side upper_, lower_;
   int lowest_static_, highest_static_;
   int rank_;
-  std::vector<Block> blocks_;       // by rank
-  std::vector<int> owner_of_pair_;  // rank
+  std::vector<Block> blocks_;                         // by rank
+  std::vector<int> owner_of_pair_, owner_of_static_;  // ranks of pairs n, -n and of static levels
+  std::vector<int> place_, static_place_;             // among those of their rank, of noise nodes
   std::vector<int> local_noise_;
   PetscInt global_size_ = 0, local_size_ = 0;
 };

@@ -40,13 +40,13 @@ class VelocityDiscretisation {
   virtual ~VelocityDiscretisation() = default;
 
   /// Nodes v_j > 0 in rising order [velocity].
-  [[nodiscard]] virtual std::span<const double> nodes() const = 0;
+  [[nodiscard]] std::span<const double> nodes() const { return nodes_; }
   /// Weights with sum_j w_j f(v_j) ~ int_0^v_max f(v) dv.
-  [[nodiscard]] virtual std::span<const double> weights() const = 0;
+  [[nodiscard]] std::span<const double> weights() const { return weights_; }
   /// End of the velocity discretisation [velocity].
   [[nodiscard]] virtual double v_max() const = 0;
   /// Ends 0 = e_0 < e_1 < ... of the cells by which fields are compared between discretisations.
-  [[nodiscard]] virtual std::span<const double> cells() const = 0;
+  [[nodiscard]] std::span<const double> cells() const { return ends_; }
 
   /// Row j of T for the speed B(v) = net_force + b(v), into the storage of `row`. O(its entries).
   virtual void transport(double net_force, int j, TransportRow& row) const = 0;
@@ -89,23 +89,15 @@ class VelocityDiscretisation {
   }
   /// Whether bodies of either branch are killed somewhere.
   [[nodiscard]] bool kills() const { return kills_ || (mirrored_ && mirrored_->kills_); }
-  /// The same on [0, speed], where bodies are killed that reach `speed` > 0, as fine there as at
-  /// v = 0; of both branches.
-  [[nodiscard]] std::shared_ptr<const VelocityDiscretisation> killing_at(double speed) const {
-    auto own = up_to(speed);
-    own->last_below_ = static_cast<int>(own->cells().size()) - 2;
-    own->kills_ = true;
-    if (mirrored_) own->set_mirrored(mirrored_->killing_at(speed));
-    return own;
-  }
-  /// The same with a cell that ends at `speed`, as fine below it as at v = 0, and what is beyond:
-  /// bodies that rise to it are killed on this branch, on the other one, on both or on none.
-  [[nodiscard]] std::shared_ptr<const VelocityDiscretisation> passing(double speed, bool here,
-                                                                      bool there) const {
-    auto own = split_at(speed);
+  /// The same with a cell that ends at `speed` > 0, as fine below it as at v = 0, and `beyond` it
+  /// or not: bodies that rise to it are killed on this branch, on the other one, on both or on
+  /// none.
+  [[nodiscard]] std::shared_ptr<const VelocityDiscretisation> cut_at(double speed, bool beyond,
+                                                                     bool here, bool there) const {
+    auto own = split(speed, beyond);
     own->kills_ = here;
     if (mirrored_ || here != there) {
-      auto lower = mirrored().split_at(speed);
+      auto lower = mirrored().split(speed, beyond);
       lower->kills_ = there;
       own->set_mirrored(std::move(lower));
     }
@@ -124,18 +116,26 @@ class VelocityDiscretisation {
   [[nodiscard]] int size() const { return static_cast<int>(nodes().size()); }
 
  protected:
-  VelocityDiscretisation() = default;
+  explicit VelocityDiscretisation(const model::Drag& drag) : drag_(drag) {}
   VelocityDiscretisation(const VelocityDiscretisation&) = default;
   VelocityDiscretisation& operator=(const VelocityDiscretisation&) = default;
 
+  void add_node(double v, double weight) {
+    nodes_.push_back(v);
+    weights_.push_back(weight);
+    drag_at_nodes_.push_back(drag_(v));
+  }
   /// Whether bodies are killed that rise out of a cell.
   [[nodiscard]] bool kills_above(int cell) const { return kills_ && cell == last_below_; }
   void end_at_speed(int cell) { last_below_ = cell; }
 
+  model::Drag drag_;
+  std::vector<double> nodes_, weights_, drag_at_nodes_, ends_;  // of cells
+
  private:
-  [[nodiscard]] virtual std::unique_ptr<VelocityDiscretisation> up_to(double speed) const = 0;
   /// With end_at_speed() of the cell below the speed.
-  [[nodiscard]] virtual std::unique_ptr<VelocityDiscretisation> split_at(double speed) const = 0;
+  [[nodiscard]] virtual std::unique_ptr<VelocityDiscretisation> split(double speed,
+                                                                      bool beyond) const = 0;
 
   bool kills_ = false;
   int last_below_ = -1;
@@ -182,10 +182,7 @@ class HpDiscretisation final : public VelocityDiscretisation {
   /// The same degree everywhere.
   HpDiscretisation(const std::vector<double>& ends, int degree, const model::Drag& drag);
 
-  [[nodiscard]] std::span<const double> nodes() const override { return nodes_; }
-  [[nodiscard]] std::span<const double> weights() const override { return weights_; }
   [[nodiscard]] double v_max() const override { return ends_.back(); }
-  [[nodiscard]] std::span<const double> cells() const override { return ends_; }
   void transport(double net_force, int j, TransportRow& row) const override;
   void transport_change(double net_force, const SpeedChange& change, int j,
                         TransportRow& row) const override;
@@ -211,8 +208,8 @@ class HpDiscretisation final : public VelocityDiscretisation {
   [[nodiscard]] double drag_at_end(int end) const { return drag_at_ends_[end]; }
 
  private:
-  [[nodiscard]] std::unique_ptr<VelocityDiscretisation> up_to(double speed) const override;
-  [[nodiscard]] std::unique_ptr<VelocityDiscretisation> split_at(double speed) const override;
+  [[nodiscard]] std::unique_ptr<VelocityDiscretisation> split(double speed,
+                                                              bool beyond) const override;
 
   // Ends from 0 to a speed, and the degrees between them.
   [[nodiscard]] std::pair<std::vector<double>, std::vector<int>> below(double speed) const;
@@ -228,13 +225,10 @@ class HpDiscretisation final : public VelocityDiscretisation {
   [[nodiscard]] std::vector<Entry> at_end(int element, Trace trace) const;
   [[nodiscard]] std::vector<Entry> entries(int element, std::span<const double> values) const;
 
-  std::vector<double> ends_;
   std::vector<Element> elements_;
   std::map<int, ReferenceElement> finer_;  // with 2q + 1 nodes, by q
   std::vector<int> element_of_;            // by node
-  std::vector<double> nodes_, weights_;
-  model::Drag drag_;
-  std::vector<double> drag_at_nodes_, drag_at_ends_;
+  std::vector<double> drag_at_ends_;
 };
 
 // First-order upwind differences on a uniform grid: the scheme of the paper.
@@ -252,10 +246,7 @@ class UpwindDiscretisation final : public VelocityDiscretisation {
   /// `count` >= 1 nodes of spacing `spacing` > 0.
   UpwindDiscretisation(double spacing, int count, const model::Drag& drag);
 
-  [[nodiscard]] std::span<const double> nodes() const override { return nodes_; }
-  [[nodiscard]] std::span<const double> weights() const override { return weights_; }
   [[nodiscard]] double v_max() const override { return nodes_.back(); }
-  [[nodiscard]] std::span<const double> cells() const override { return cells_; }
   void transport(double net_force, int j, TransportRow& row) const override;
   void transport_change(double net_force, const SpeedChange& change, int j,
                         TransportRow& row) const override;
@@ -268,16 +259,14 @@ class UpwindDiscretisation final : public VelocityDiscretisation {
   [[nodiscard]] bool needs_holding() const override { return false; }
 
  private:
-  [[nodiscard]] std::unique_ptr<VelocityDiscretisation> up_to(double speed) const override;
-  [[nodiscard]] std::unique_ptr<VelocityDiscretisation> split_at(double speed) const override;
+  [[nodiscard]] std::unique_ptr<VelocityDiscretisation> split(double speed,
+                                                              bool beyond) const override;
 
   // The row of a node where the body moves on at `rate`, upwards or downwards by the sign of
   // `direction`.
   void fill(int j, double direction, double rate, TransportRow& row) const;
 
   double spacing_;
-  model::Drag drag_;
-  std::vector<double> nodes_, weights_, cells_, drag_at_nodes_;
 };
 
 }  // namespace stickslip::generator

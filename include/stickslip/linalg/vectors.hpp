@@ -79,47 +79,29 @@ using DenseMatrix = Matrix<PetscScalar>;
 using DenseFactors = LuFactors<PetscScalar>;
 using Scalars = std::vector<PetscScalar>;
 
-/// Read access to the local part of a Vec for the life of the view. Not collective.
-class ReadView {
+/// Access to the local part of a Vec for the life of the view. Not collective.
+template <class Entry, auto take, auto give_back>
+class View {
  public:
-  explicit ReadView(Vec vec) : vec_(vec) {
+  explicit View(Vec vec) : vec_(vec) {
     check(VecGetLocalSize(vec_, &size_));
-    check(VecGetArrayRead(vec_, &data_));
+    check(take(vec_, &data_));
   }
-  ~ReadView() { (void)VecRestoreArrayRead(vec_, &data_); }
-  ReadView(const ReadView&) = delete;
-  ReadView& operator=(const ReadView&) = delete;
+  ~View() { (void)give_back(vec_, &data_); }
+  View(const View&) = delete;
+  View& operator=(const View&) = delete;
 
-  [[nodiscard]] const PetscScalar& operator[](PetscInt i) const { return data_[i]; }
+  [[nodiscard]] Entry& operator[](PetscInt i) const { return data_[i]; }
   [[nodiscard]] PetscInt size() const { return size_; }
-  [[nodiscard]] const PetscScalar* data() const { return data_; }
+  [[nodiscard]] Entry* data() const { return data_; }
 
  private:
   Vec vec_;
   PetscInt size_ = 0;
-  const PetscScalar* data_ = nullptr;
+  Entry* data_ = nullptr;
 };
-
-/// Write access to the local part of a Vec for the life of the view. Not collective.
-class WriteView {
- public:
-  explicit WriteView(Vec vec) : vec_(vec) {
-    check(VecGetLocalSize(vec_, &size_));
-    check(VecGetArray(vec_, &data_));
-  }
-  ~WriteView() { (void)VecRestoreArray(vec_, &data_); }
-  WriteView(const WriteView&) = delete;
-  WriteView& operator=(const WriteView&) = delete;
-
-  [[nodiscard]] PetscScalar& operator[](PetscInt i) { return data_[i]; }
-  [[nodiscard]] PetscInt size() const { return size_; }
-  [[nodiscard]] PetscScalar* data() { return data_; }
-
- private:
-  Vec vec_;
-  PetscInt size_ = 0;
-  PetscScalar* data_ = nullptr;
-};
+using ReadView = View<const PetscScalar, VecGetArrayRead, VecRestoreArrayRead>;
+using WriteView = View<PetscScalar, VecGetArray, VecRestoreArray>;
 
 /// Read access to a local row of a Mat for the life of the view. Not collective.
 class RowView {
@@ -219,6 +201,13 @@ void sum_over_ranks(MPI_Comm comm, Numbers& numbers) {
   VecHandle both = copy_of(a);
   check(VecPointwiseMult(both, a, b));
   return both;
+}
+
+/// Collective.
+[[nodiscard]] inline double norm(Vec x, NormType type) {
+  PetscReal size = 0;
+  check(VecNorm(x, type, &size));
+  return size;
 }
 
 /// Scales the entries such that their sum is 1. Collective.

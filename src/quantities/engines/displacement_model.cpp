@@ -273,10 +273,8 @@ void DisplacementModel::weigh_tilted(const Entries& c) {
     systems_.release(key);
     const linalg::VecHandle both = linalg::product(l, r);
     PetscScalar sum = 0;
-    PetscReal sizes = 0;
     check(VecSum(both, &sum));
-    check(VecNorm(both, NORM_1, &sizes));
-    const double size = PetscRealPart(sum);
+    const double size = PetscRealPart(sum), sizes = linalg::norm(both, NORM_1);
     const double limit = z < last ? negative : at_most;
     const bool kept =
         sizes < (1 + limit) * size && (z == last || (size > 1 / other && size < other));

@@ -8,8 +8,6 @@
 #include <numeric>
 #include <utility>
 
-#include "stickslip/linalg/session.hpp"
-
 namespace stickslip::quantities {
 namespace {
 
@@ -218,10 +216,10 @@ StationaryDistribution::Velocity
 StationaryDistribution::velocity(const KolmogorovOperator& a) const {
   const double total = excursion_.mean_excursion();
   const double mean = excursion_.mean_drift(*discretisation_.noise) / total;
-  Velocity velocity{a.values([mean](double, double, double v) { return v - mean; }), a.zeros()};
-  linalg::check(VecPointwiseMult(velocity.c, velocity.b, occupation_on(a)));
-  linalg::check(VecScale(velocity.c, 1 / total));
-  return velocity;
+  linalg::VecHandle b = a.values([mean](double, double, double v) { return v - mean; }),
+                    c = linalg::product(b, occupation_on(a));
+  linalg::check(VecScale(c, 1 / total));
+  return {std::move(b), std::move(c)};
 }
 
 // High order leaves far tails with signs of their own.
@@ -230,10 +228,8 @@ linalg::VecHandle StationaryDistribution::weight_on(const KolmogorovOperator& a)
 }
 
 linalg::VecHandle positive_weight(linalg::VecHandle weight) {
-  PetscReal largest = 0;
   linalg::check(VecAbs(weight));
-  linalg::check(VecNorm(weight, NORM_INFINITY, &largest));
-  linalg::check(VecShift(weight, 1e-12 * largest));
+  linalg::check(VecShift(weight, 1e-12 * linalg::norm(weight, NORM_INFINITY)));
   return weight;
 }
 
@@ -294,8 +290,7 @@ UntilPassage::UntilPassage(const generator::KolmogorovOperator& a, const Stickin
   for (const auto& solution : solutions) {
     Vec nu = solution.*which;
     nu_.push_back(nu);
-    entry_.emplace_back();
-    for (const auto& rate : a.entry_rates(nu)) entry_.back().push_back(PetscRealPart(rate));
+    entry_.push_back(real_parts(a.entry_rates(nu)));
     reached_.push_back(a.rate_at_top(nu));
   }
 }

@@ -158,9 +158,7 @@ class Search {
     std::vector<Recipe::Scale> known = scales(), rounded;
     if (replayed_) known.insert(known.end(), recipe_.scales.begin(), recipe_.scales.end());
     const double rounding = rounding_among(known);
-    const auto least = std::min_element(known.begin(), known.end(), [](auto& a, auto& b) {
-      return a.beside_residuals < b.beside_residuals;
-    });
+    const auto least = std::ranges::min_element(known, {}, &Recipe::Scale::beside_residuals);
     if (least != known.end()) {
       const double most = kRounded * least->beside_residuals;
       const auto first = std::partition(known.begin(), known.end(), [most](const auto& scale) {
@@ -170,16 +168,13 @@ class Search {
       known.erase(first, known.end());
     }
     const auto nearest = [](const std::vector<Recipe::Scale>& all, Complex z) {
-      return std::min_element(all.begin(), all.end(), [z](auto& a, auto& b) {
-        return distance(a.z, z) < distance(b.z, z);
-      });
+      return std::ranges::min_element(all, {},
+                                      [z](const auto& scale) { return distance(scale.z, z); });
     };
     errors_.clear();
     for (std::size_t p = 0; p < questions_.points.size(); ++p) {
       const Complex z = questions_.points[p];
-      const auto truth = std::find_if(truths_.begin(), truths_.end(),
-                                      [z](const Truth& solved) { return solved.z == z; });
-      if (truth != truths_.end()) {
+      if (const auto truth = truth_at(p); truth != truths_.end()) {
         errors_.push_back(judged_->deviation(*truth));
         continue;
       }
@@ -214,17 +209,14 @@ class Search {
   [[nodiscard]] std::size_t worst_point() const {
     const auto worst = std::max_element(relative_.begin(), relative_.end()) - relative_.begin();
     const auto& terms = questions_.terms[static_cast<std::size_t>(worst)];
-    return std::max_element(terms.begin(), terms.end(),
-                            [this](auto& a, auto& b) {
-                              return a.weight * errors_[a.point] < b.weight * errors_[b.point];
-                            })
-        ->point;
+    const auto share = [this](const auto& term) { return term.weight * errors_[term.point]; };
+    return std::ranges::max_element(terms, {}, share)->point;
   }
 
-  [[nodiscard]] bool known(std::size_t point) const {
-    return std::any_of(truths_.begin(), truths_.end(),
-                       [&](const Truth& truth) { return truth.z == questions_.points[point]; });
+  [[nodiscard]] std::vector<Truth>::iterator truth_at(std::size_t point) {
+    return std::ranges::find(truths_, questions_.points[point], &Truth::z);
   }
+  [[nodiscard]] bool known(std::size_t point) { return truth_at(point) != truths_.end(); }
 
   void verify(std::size_t point) {
     const Complex z = questions_.points[point];
@@ -261,8 +253,7 @@ class Search {
       if (worst_point() != point) return true;
     }
     const Complex z = questions_.points[point];
-    const auto truth = std::find_if(truths_.begin(), truths_.end(),
-                                    [z](const Truth& known) { return known.z == z; });
+    const auto truth = truth_at(point);
     if (truth->inverse == nullptr) *truth = model_.truth(z, truth->far);
     if (model_.interpolate(*truth) == 0) return false;
     recipe_.steps.push_back({z, 0});
@@ -332,8 +323,7 @@ void add_points(const std::vector<Fold>& folds, const std::vector<double>& time,
       places.push_back({std::complex<double>(1, y) / time[n], n, width / time[n]});
     }
   }
-  std::sort(places.begin(), places.end(),
-            [](const Place& a, const Place& b) { return std::abs(a.z) < std::abs(b.z); });
+  std::ranges::sort(places, {}, [](const Place& place) { return std::abs(place.z); });
   questions.terms.resize(folds.size() * time.size());
   for (const Place& place : places) {
     for (std::size_t f = 0; f < folds.size(); ++f) {

@@ -27,12 +27,11 @@ linalg::BvHandle basis_like(Vec vec, int columns) {
 // rounding.
 bool appended(BV basis, int column, Vec vec) {
   constexpr double smallest = 1e-13;
-  PetscReal size = 0, left = 0;
+  PetscReal left = 0;
   PetscBool dependent = PETSC_FALSE;
-  check(VecNorm(vec, NORM_2, &size));
   check(BVInsertVec(basis, column, vec));
   check(BVOrthogonalizeColumn(basis, column, nullptr, &left, &dependent));
-  if (dependent || !(left > smallest * size)) return false;
+  if (dependent || !(left > smallest * linalg::norm(vec, NORM_2))) return false;
   check(BVScaleColumn(basis, column, 1 / left));
   return true;
 }
@@ -246,8 +245,7 @@ ReducedModel::ReducedModel(Pencil& pencil, const Ends& ends, Nature nature, int 
 
 // y = D^1/2 A D^-1/2 x or its transpose.
 void ReducedModel::multiply(Vec x, Vec y, bool transposed) const {
-  const linalg::VecHandle scaled = copy_of(x);
-  check(VecPointwiseMult(scaled, scaled, transposed ? root_ : inverse_root_));
+  const linalg::VecHandle scaled = linalg::product(x, transposed ? root_ : inverse_root_);
   pencil_.multiply(scaled, y, transposed);
   check(VecPointwiseMult(y, y, transposed ? inverse_root_ : root_));
 }
@@ -266,8 +264,7 @@ bool ReducedModel::append(Vec v, Vec w) {
 
 // x <- (s + A)^-1 x, or the transpose, scaled.
 void ReducedModel::resolve(double shift, Vec x, bool transposed, bool refined) const {
-  const linalg::VecHandle b = copy_of(x);
-  check(VecPointwiseMult(b, b, transposed ? root_ : inverse_root_));
+  const linalg::VecHandle b = linalg::product(x, transposed ? root_ : inverse_root_);
   pencil_.solve(shift, b, x, transposed, refined);
   check(VecPointwiseMult(x, x, transposed ? inverse_root_ : root_));
 }

@@ -123,6 +123,29 @@ void append_averages(const StationaryDistribution& distribution,
                      const generator::KolmogorovOperator& a,
                      const std::vector<model::Observable>& observables, Results& results);
 
+/// Derivatives of means over an excursion, M = nu f + entry . s, for a function f of the sliding
+/// states and static values s. With the adjoint h, A h = f - A_us s,
+///
+///   dM = nu dL (h, s) + entry . ds,
+///
+/// where dL is the derivative of the generator on functions with the static values s: the flow
+/// changes by dB, the jumps by d(Lambda alpha). One forward solve with systems.at(0, even) for each
+/// M, whatever the number of parameters; one assembly for each parameter. Elements and upwind
+/// directions are kept: what that leaves out is an error of the discretisation, and falls with it.
+///
+/// Without symmetry the shares of excursions by the level from which they start change as well. The
+/// level from which the next one starts then counts like a static value: h and s get the mean of z
+/// there, where (1 - P) z = h - M for the chain P of the starts (DiscountedStarts::apart). One more
+/// forward solve for each M. With a single static level mean_stick takes no solve, and has no
+/// derivative but that by tau.
+///
+/// Appends dKEY_dPARAMETER for each KEY of append_sticking() and, with `moments`, of
+/// append_moments(), which takes three more solves; effects::derivatives_of has the parameters of a
+/// scene. Collective.
+void append_sensitivity(generator::Systems& systems, const StationaryDistribution& distribution,
+                        const std::vector<model::Derivative>& parameters, bool sticking,
+                        bool moments, Results& results);
+
 /// Where sticking phases lead; nothing of a body that never rests.
 struct StickingPhases {
   /// With `reduced`, by the half of the states that symmetry leaves, where all starts are alike.
@@ -195,24 +218,6 @@ class UntilPassage {
   std::vector<ByLevel> entry_;
   std::vector<double> reached_;
 };
-
-/// The reason of entries without a value: speeds that are reached so rarely that rounding is all
-/// there is.
-inline void name_too_rare(Result& result) {
-  if (!all_numbers(result)) {
-    result.unreached = "is beyond double precision, being too rare; leave that entry out";
-  }
-}
-
-/// Appends one of the numbers of each speed of -velocity as an array.
-template <class Passage>
-void append_by_speed(const Computation& computation, const Row& row,
-                     const std::vector<Passage>& passages, Uncertain Passage::*member) {
-  Result result = array(row, computation.question().velocity);
-  for (const auto& passage : passages) append_value(result, passage.*member);
-  name_too_rare(result);
-  computation.results().push_back(std::move(result));
-}
 
 // The starts of excursions as a chain whose steps are discounted.
 
