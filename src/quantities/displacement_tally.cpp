@@ -42,10 +42,6 @@ struct TransformWave {
   double weight, cosine, sine;
 };
 
-struct Within {
-  double weight, within;
-};
-
 // With symmetry x is as likely as -x, and |x| is below the quantile of |2 p - 1| with that
 // probability.
 Estimate mirrored(const PathBins& sizes, double p) {
@@ -123,10 +119,10 @@ void displacement_distribution_tally(Tally& tally) {
     return tally.sums_along(start, [=](const FollowedPath& path, const State& z) {
       const double x = z.displacement, here = is_within(x) ? 1 : 0;
       const double share = even ? (here + (is_within(-x) ? 1 : 0)) / 2 : here;
-      return Within{path.weight, path.weight * share};
+      return Weighted{path.weight, path.weight * share};
     });
   };
-  std::vector<std::vector<Sums<Within>>> below, inside;
+  std::vector<std::vector<Sums<Weighted>>> below, inside;
   for (std::size_t n = 0; n < distance.size(); ++n) {
     const double d = distance[n];
     below.push_back(shares([d](double x) { return x <= d; }));
@@ -140,11 +136,10 @@ void displacement_distribution_tally(Tally& tally) {
     for (std::size_t at = 0; !distance.empty() && at < time.size(); ++at) {
       const auto share = [at](const auto& all) {
         const auto& m = all[at];
-        return jeffreys(m, m.overall(&Within::within) / m.overall(&Within::weight), 1, m.count());
+        return jeffreys(m, mean_of(m), 1, m.count());
       };
       const auto add = [&](const cases::Row& row, const auto& value) {
-        found.push_back(array(row, distance, value));
-        found.back().key = row.key_of(fmt::format("{}", time[at]));
+        found.push_back(simulation::at(time[at], array(row, distance, value)));
       };
       add(cases::kDisplacementDensity,
           [&](std::size_t n) { return share(inside[n]) / (cells[n].high - cells[n].low); });

@@ -1,5 +1,3 @@
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -140,9 +138,6 @@ void passages_of(Tally& tally, const std::vector<double>& speeds, const Follow& 
 struct PassedPath {
   double weight, time, square;
 };
-struct MeanOfPath {
-  double weight, value;
-};
 
 // For each speed sums of of(weight of the path, when it passes). Paths meet speeds as they rise.
 auto sums_by_speed(Tally& tally, const auto& of) {
@@ -162,14 +157,14 @@ auto sums_by_speed(Tally& tally, const auto& of) {
   return all;
 }
 
-using MeansBySpeed = std::vector<Sums<MeanOfPath>>;
+using MeansBySpeed = std::vector<Sums<Weighted>>;
 
 // Of of(time, s), for each s of a list.
 std::vector<MeansBySpeed> means_by_speed(Tally& tally, const auto& list, const auto& of) {
   std::vector<MeansBySpeed> all;
   for (const auto& s : list) {
     all.push_back(sums_by_speed(tally, [=](double weight, double time) {
-      return MeanOfPath{weight, weight * of(time, s)};
+      return Weighted{weight, weight * of(time, s)};
     }));
   }
   return all;
@@ -182,12 +177,10 @@ void report_by_speed(Tally& tally, const cases::Row& row, const std::vector<doub
     Estimates found;
     const auto& speeds = t.question().velocity;
     for (std::size_t w = 0; w < speeds.size(); ++w) {
-      found.push_back(array(row, abscissa, [&](std::size_t n) {
-        const auto& m = means[n][w];
-        const Smooth mean = m.overall(&MeanOfPath::value) / m.overall(&MeanOfPath::weight);
-        return jeffreys(m, mean, 1, m.count()) / unit[n];
-      }));
-      found.back().key = row.key_of(fmt::format("{}", speeds[w]));
+      found.push_back(at(speeds[w], array(row, abscissa, [&](std::size_t n) {
+                           const auto& m = means[n][w];
+                           return jeffreys(m, mean_of(m), 1, m.count()) / unit[n];
+                         })));
     }
     return found;
   });

@@ -91,23 +91,18 @@ void average(Tally& tally, std::size_t n) {
 }
 
 void expectation_of(Tally& tally, std::size_t n) {
-  struct Value {
-    double weight, of_f;
-  };
   const auto& f = tally.question().observables[n];
   const auto stationary = observe(tally, f);
   const auto& start = tally.question().start;
   const bool even = tally.process().symmetric() && start.kind == model::Start::Kind::stationary;
   const auto sums = tally.sums_along(start, [f, even](const FollowedPath& path, const State& z) {
     const double value = even ? f.even(z.x, z.y, z.v) : f(z.x, z.y, z.v);
-    return Value{path.weight, path.weight * value};
+    return Weighted{path.weight, path.weight * value};
   });
   tally.report([=](const Tally& t) -> Estimates {
     const auto& of = t.question().observables[n];
     const auto mean = [&](std::size_t at) {
-      const auto& m = sums[at];
-      const Estimate e = m.estimate(m.overall(&Value::of_f) / m.overall(&Value::weight));
-      return widened(t, of, e);
+      return widened(t, of, sums[at].estimate(mean_of(sums[at])));
     };
     const Estimate in_the_end = widened(t, of, stationary_mean(stationary));
     return {array(cases::kExpectationOf, t.question().time, mean, &of),

@@ -62,6 +62,22 @@ struct OverTime {
   double slide, stick, x;
 };
 
+// By side; of cycles, which are the shorter the more often their start occurs.
+std::vector<int> starts_of(const model::Process& process, Sampled sampled) {
+  if (follows_paths(process)) return {kPathBegins};
+  if (!process.sticks()) return {};
+  if (sampled != Sampled::cycles) return {process.exit_level(true), process.exit_level(false)};
+  const auto flows = process.flows_to_starts();
+  return {std::ranges::max_element(flows, {}, [](const auto& each) { return each.second; })->first};
+}
+
+// Excursions take the streams from 0 on.
+std::uint64_t places_stream(std::uint64_t batch) { return std::uint64_t{1} << 62 | batch; }
+std::uint64_t rests_stream(std::uint64_t batch) { return std::uint64_t{1} << 61 | batch; }
+std::uint64_t path_stream(std::uint64_t batch, int sample, std::uint64_t which) {
+  return std::uint64_t{1} << 63 | batch << 18 | static_cast<std::uint64_t>(sample) << 2 | which;
+}
+
 }  // namespace
 
 std::vector<Tally::Range> cells_around(const std::vector<double>& at) {
@@ -275,26 +291,6 @@ void Tally::merge(std::span<const double> packed) {
   for (auto& bins : bins_) add_to(bins.numbers());
 }
 
-namespace {
-
-// By side; of cycles, which are the shorter the more often their start occurs.
-std::vector<int> starts_of(const model::Process& process, Sampled sampled) {
-  if (follows_paths(process)) return {kPathBegins};
-  if (!process.sticks()) return {};
-  if (sampled != Sampled::cycles) return {process.exit_level(true), process.exit_level(false)};
-  const auto flows = process.flows_to_starts();
-  return {std::ranges::max_element(flows, {}, [](const auto& each) { return each.second; })->first};
-}
-
-// Excursions take the streams from 0 on.
-std::uint64_t places_stream(std::uint64_t batch) { return std::uint64_t{1} << 62 | batch; }
-std::uint64_t rests_stream(std::uint64_t batch) { return std::uint64_t{1} << 61 | batch; }
-std::uint64_t path_stream(std::uint64_t batch, int sample, std::uint64_t which) {
-  return std::uint64_t{1} << 63 | batch << 18 | static_cast<std::uint64_t>(sample) << 2 | which;
-}
-
-}  // namespace
-
 Sampler::Sampler(const cases::Question& question, const model::Process& process)
     : tally_(question, process),
       process_(process),
@@ -306,8 +302,7 @@ Sampler::Sampler(const cases::Question& question, const model::Process& process)
       states_(wanted_.time.size()) {
   if (wanted_.start || wanted_.stationary_paths) walk_ = make_walk(process, wanted_.travel);
   std::iota(order_.begin(), order_.end(), std::size_t{0});
-  std::sort(order_.begin(), order_.end(),
-            [&](std::size_t a, std::size_t b) { return wanted_.time[a] < wanted_.time[b]; });
+  std::ranges::sort(order_, {}, [&](std::size_t n) { return wanted_.time[n]; });
   if (wanted_.speeds.empty()) return;
   from_rest_ = make_source(process, {.speeds = wanted_.speeds});
   at_rest_ = std::make_unique<NoiseLevels>(process.noise);

@@ -1,6 +1,8 @@
 #pragma once
 /// What is kept of many excursions and paths, and the estimates made from it.
 
+#include <fmt/format.h>
+
 #include <array>
 #include <cstdint>
 #include <deque>
@@ -29,12 +31,25 @@ struct Estimated {
 
 using Estimates = std::vector<Estimated>;
 
+/// Of a row that stands for one array for each time or speed.
+[[nodiscard]] inline Estimated at(double place, Estimated array) {
+  array.key = array.row->key_of(fmt::format("{}", place));
+  return array;
+}
 /// With value(n) at the n-th place of the abscissa.
 [[nodiscard]] Estimated array(const cases::Row& row, const std::vector<double>& abscissa,
                               const auto& value, const model::Observable* observable = nullptr) {
   Estimated all{&row, {}, abscissa, observable};
   for (std::size_t n = 0; n < abscissa.size(); ++n) all.values.push_back(value(n));
   return all;
+}
+
+/// A number that a path shows, times its weight; and its mean over paths.
+struct Weighted {
+  double weight, value;
+};
+[[nodiscard]] inline Smooth mean_of(const Sums<Weighted>& paths) {
+  return paths.overall(&Weighted::value) / paths.overall(&Weighted::weight);
 }
 
 /// All that is kept for the quantities of a question. Each of them is a function that says what it
