@@ -5,15 +5,12 @@
 #include <algorithm>
 #include <cstddef>
 #include <utility>
-#include <vector>
 
 #include "stickslip/base/text.hpp"
 #include "stickslip/case/displacement_rows.hpp"
 #include "stickslip/case/duration_rows.hpp"
 #include "stickslip/case/force_rows.hpp"
 #include "stickslip/case/passage_rows.hpp"
-#include "stickslip/case/sensitivity_rows.hpp"
-#include "stickslip/case/slip_rows.hpp"
 #include "stickslip/case/spectrum_rows.hpp"
 #include "stickslip/case/sticking_rows.hpp"
 

@@ -1,6 +1,4 @@
-#include "stickslip/quantities/displacement.hpp"
-
-#include <fmt/format.h>
+#include "stickslip/quantities/correlations.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -18,7 +16,6 @@ using generator::KolmogorovOperator;
 using generator::State;
 using generator::StateKind;
 using generator::StaticPhase;
-using generator::Symmetry;
 using linalg::check;
 using linalg::dot;
 

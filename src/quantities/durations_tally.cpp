@@ -1,7 +1,6 @@
 #include <cmath>
 
 #include "stickslip/case/duration_rows.hpp"
-#include "stickslip/case/slip_rows.hpp"
 #include "stickslip/simulation/tally.hpp"
 
 namespace stickslip::simulation {

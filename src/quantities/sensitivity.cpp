@@ -1,4 +1,4 @@
-#include "stickslip/quantities/sensitivity.hpp"
+#include "stickslip/quantities/engines/excursions.hpp"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,6 @@
 #include <cmath>
 #include <numeric>
 
-#include "stickslip/case/sensitivity_rows.hpp"
 #include "stickslip/case/sticking_rows.hpp"
 #include "stickslip/model/effect.hpp"
 

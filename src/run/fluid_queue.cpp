@@ -1,4 +1,4 @@
-#include "stickslip/run/fluid_queue.hpp"
+#include "stickslip/run/routes.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,3 @@
-#include "stickslip/run/fluid_queue.hpp"
 
 #include <fmt/format.h>
 
@@ -18,7 +17,7 @@
 #include "stickslip/model/noise_chain.hpp"
 #include "stickslip/quantities/engines/excursions.hpp"
 #include "stickslip/quantities/plan.hpp"
-#include "stickslip/run/evaluation.hpp"
+#include "stickslip/run/routes.hpp"
 
 namespace stickslip::run {
 namespace {
@@ -325,10 +324,9 @@ double relative_residual(Mat transposed, Vec pi) {
   linalg::VecHandle residual;
   check(VecDuplicate(pi, residual.out()));
   check(MatMult(transposed, pi, residual));
-  PetscReal size = 0, norm = 0;
-  check(VecNorm(residual, NORM_1, &size));
+  PetscReal norm = 0;
   check(MatNorm(transposed, NORM_1, &norm));
-  return size / norm;
+  return linalg::norm(residual, NORM_1) / norm;
 }
 
 double integral(const KolmogorovOperator& a, Vec pi, const KolmogorovOperator::Observable& f) {
@@ -348,8 +346,7 @@ Uncertain mean_excursion(const Problem& problem, const KolmogorovOperator& a, Ve
 
 void append_durations(Uncertain excursion, quantities::Results& results) {
   const auto share = [&](const quantities::Row& row) {
-    const auto r = std::find_if(results.begin(), results.end(),
-                                [&row](const auto& result) { return result.key == row.key; });
+    const auto r = std::ranges::find(results, row.key, &quantities::Result::key);
     return Uncertain{r->value[0], r->error[0]};
   };
   const Uncertain stick = share(cases::kPStick) * excursion,

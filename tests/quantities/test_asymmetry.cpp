@@ -7,7 +7,7 @@
 #include "stickslip/model/noise_chain.hpp"
 #include "stickslip/quantities/density.hpp"
 #include "stickslip/quantities/engines/excursions.hpp"
-#include "stickslip/run/evaluation.hpp"
+#include "stickslip/run/routes.hpp"
 
 using namespace stickslip;
 using cases::Quantity;

@@ -6,7 +6,7 @@
 #include "stickslip/generator/static_chain.hpp"
 #include "stickslip/quantities/durations.hpp"
 #include "stickslip/quantities/engines/excursions.hpp"
-#include "stickslip/run/fluid_queue.hpp"
+#include "stickslip/run/routes.hpp"
 
 using namespace stickslip;
 using generator::Systems;

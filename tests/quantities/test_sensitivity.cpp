@@ -7,7 +7,7 @@
 #include "../common/solved.hpp"
 #include "stickslip/model/effect.hpp"
 #include "stickslip/model/noise_chain.hpp"
-#include "stickslip/quantities/sensitivity.hpp"
+#include "stickslip/quantities/engines/excursions.hpp"
 
 using namespace stickslip;
 using quantities::Results;

@@ -4,9 +4,9 @@
 #include "../common/catch.hpp"
 #include "../common/solved.hpp"
 #include "stickslip/linalg/vectors.hpp"
-#include "stickslip/quantities/displacement.hpp"
+#include "stickslip/quantities/correlations.hpp"
+#include "stickslip/quantities/durations.hpp"
 #include "stickslip/quantities/passages.hpp"
-#include "stickslip/quantities/slip.hpp"
 #include "stickslip/quantities/spectra.hpp"
 
 using namespace stickslip;

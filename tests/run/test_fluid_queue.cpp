@@ -4,7 +4,7 @@
 
 #include "../common/catch.hpp"
 #include "../common/near.hpp"
-#include "stickslip/run/fluid_queue.hpp"
+#include "stickslip/run/routes.hpp"
 
 using namespace stickslip;
 using run::FluidQueue;

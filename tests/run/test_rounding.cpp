@@ -10,7 +10,7 @@
 #include "../common/scenes.hpp"
 #include "stickslip/case/passage_rows.hpp"
 #include "stickslip/quantities/engines/excursions.hpp"
-#include "stickslip/run/evaluation.hpp"
+#include "stickslip/run/routes.hpp"
 
 using namespace stickslip;
 using cases::Case;

@@ -7,7 +7,7 @@
 #include "../common/chains.hpp"
 #include "../common/near.hpp"
 #include "../common/scenes.hpp"
-#include "stickslip/run/evaluation.hpp"
+#include "stickslip/run/routes.hpp"
 
 using namespace stickslip;
 using cases::Quantity;

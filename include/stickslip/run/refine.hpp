@@ -15,7 +15,7 @@
 #include "stickslip/run/campaign.hpp"
 #include "stickslip/run/discretise.hpp"
 #include "stickslip/run/estimates.hpp"
-#include "stickslip/run/evaluation.hpp"
+#include "stickslip/run/routes.hpp"
 #include "stickslip/simulation/walk.hpp"
 
 namespace stickslip::run {
