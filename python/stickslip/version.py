@@ -1,3 +1,3 @@
 """Version of the package: that of the program in CMakeLists.txt, as a test makes sure."""
 
-__version__ = "1.0.2"
+__version__ = "1.1.0"
