@@ -1,6 +1,7 @@
 #include "stickslip/cli/hdf5_file.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <hdf5_hl.h>
 #include <nlohmann/json.hpp>
 #include <unistd.h>

@@ -9,6 +9,7 @@
 7. No two rooms have files of one name.
 8. No file is longer than 700 lines.
 9. What Python files import, they use.
+10. What joins text includes the header of it, which older versions of fmt include by another one.
 """
 
 import ast
@@ -162,6 +163,13 @@ def check_vocabulary(root):
                 yield f"{path}:{number}: {found.group(0)} has another name now"
 
 
+def check_joins(root):
+    for path in source_files(root, "include", "src", "tests"):
+        text = path.read_text()
+        if "fmt::join(" in text and "#include <fmt/ranges.h>" not in text:
+            yield f"{path}: fmt::join needs <fmt/ranges.h>"
+
+
 def check_files(root):
     rooms = {}
     for path in source_files(root, "include", "src"):
@@ -198,7 +206,8 @@ def check_imports(root):
 def main():
     root = pathlib.Path(sys.argv[1]).resolve()
     complaints = [text for rule in (check_order, check_scalars, check_petsc_calls, check_function_lengths,
-                                    check_words, check_vocabulary, check_files, check_imports) for text in rule(root)]
+                                    check_words, check_vocabulary, check_joins, check_files,
+                                    check_imports) for text in rule(root)]
     print("\n".join(complaints) or "sources follow the rules")
     sys.exit(1 if complaints else 0)
 
