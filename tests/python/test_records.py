@@ -372,6 +372,8 @@ class Descriptions(Case):
             self.refused(r"0 \(N28W\), 1 \(Up\)", text, "a.V2A")
             self.same(self.read(text, "b.V2A", channel="Up"), "m/s^2", -factor, time, value)
         self.refused("do not fit together", text.replace("      24", "      25"), "c.V1A")
+        self.refused("0.02 s does not make 24 samples last 0.98 s.*step=0.01", text.replace("Duration 0.4", "Duration 0.9"), "e.V1A",
+                     column=0)
         self.refused('no whole file of GeoNet V1A or V2A, which has a line "Component', text.replace("Component", "words"),
                      "d.V1A")
 
