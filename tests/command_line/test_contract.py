@@ -127,6 +127,8 @@ class Refusals(Case):
                               (b"-mu_s 1 -mu_d 0.5\n", "write one -name value a line")):
             broken.write_bytes(text)
             self.refuse("-options_file", broken, message=(message,))
+        broken.write_bytes(b'-mu_s 1  # of 1" steel\n')
+        self.run_ok("-options_file", broken, *SMALL)
 
     def test_devices_and_pipes_stay(self):
         pipe = self.folder / "pipe"
