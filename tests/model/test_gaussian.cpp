@@ -18,9 +18,12 @@ namespace {
 
 constexpr model::Thresholds kSymmetric{{-1, 1}, {-0.5, 0.5}}, kTilted{{-1.2, 0.8}, {-0.7, 0.3}};
 
-// A narrow band, and two and three Ornstein-Uhlenbeck processes.
-const std::vector<std::vector<CovarianceTerm>> kNoises{
-    {{1, 1}}, {{1, 0.5, 2}}, {{1, 1}, {0.64, 5}}, {{0.5, 0.5}, {0.3, 2}, {0.2, 6}}};
+// A narrow band, one with a sine, and two and three Ornstein-Uhlenbeck processes.
+const std::vector<std::vector<CovarianceTerm>> kNoises{{{1, 1}},
+                                                       {{1, 0.5, 2}},
+                                                       {{1, 1, 2, -0.3}},
+                                                       {{1, 1}, {0.64, 5}},
+                                                       {{0.5, 0.5}, {0.3, 2}, {0.2, 6}}};
 
 model::NoiseChain chain_of(const GaussianNoise& noise, const model::Thresholds& thresholds,
                            int order) {
