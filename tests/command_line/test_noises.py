@@ -65,16 +65,18 @@ class Noises(Case):
 
     def test_observables_that_jump_with_the_noise(self):
         """No node of the force stands at a jump, and no step of a path ends there."""
-        case = ("-noise", "ou", "-delta", "0", "-mu_d", "0.5", "-quantities", "averages", "-observable", "(abs(x)<0.1)")
+        case = ("-noise", "ou", "-delta", "0", "-mu_d", "0.5", "-quantities", "averages", "-observable",
+                "(abs(x)<0.1);(abs(x)>0.99)")
         solved = self.summary(*case, "-accuracy", "1e-5")["results"]
         found = solved["pi((abs(x)<0.1))"]
         self.assertLess(abs(found["value"] - math.erf(0.1 / math.sqrt(2))), found["error"] + 1e-10)
         self.assertLess(found["error"], 1e-6)
         simulated = self.summary(*case, "-route", "monte_carlo", "-excursions", "8000", "-seed", "1")["results"]
         for part in ("stick", "slide"):
-            exact, path = (results[f"pi((abs(x)<0.1)|{part})"] for results in (solved, simulated))
-            self.assertLess(abs(path["value"] - exact["value"]), 2 * path["error"], part)
-            self.assertLess(path["error"], 0.03 * exact["value"])
+            for function, share in (("(abs(x)<0.1)", 0.03), ("(abs(x)>0.99)", 0.1)):  # beside mu_s, too
+                exact, path = (results[f"pi({function}|{part})"] for results in (solved, simulated))
+                self.assertLess(abs(path["value"] - exact["value"]), 2 * path["error"], (function, part))
+                self.assertLess(path["error"], share * exact["value"])
 
     def test_what_gaussian_noise_takes(self):
         noise = ("-noise", "gaussian", "-covariance")
