@@ -401,7 +401,8 @@ std::span<const std::pair<const char*, const char*>> forms() {
        "numbers separated by commas, in groups separated by semicolons, such as \"0.8,0.5; "
        "0.2,3,10\""},
       {"state", "s+ or s-, where a sliding phase starts; x,v with x a noise level; rest, V = 0 and "
-                "X in its stationary distribution; stationary, the stationary distribution"}};
+                "X in its stationary distribution; stationary, the stationary distribution; on a "
+                "spring x,v,p or rest,p at a position p, or stationary"}};
   return all;
 }
 

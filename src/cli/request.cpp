@@ -217,8 +217,8 @@ std::vector<double> values_of(const cases::Argument& argument, const Settings& s
   return values;
 }
 
-std::vector<model::Observable> read_observables(Settings& settings,
-                                                const model::Friction& friction) {
+std::vector<model::Observable> read_observables(Settings& settings, const model::Friction& friction,
+                                                bool on_spring) {
   constexpr const char* example = "write for example \"v^2; x*v; stick\"";
   std::vector<model::Observable> observables;
   const auto texts = split(settings.text("observable"), ';');
@@ -231,7 +231,7 @@ std::vector<model::Observable> read_observables(Settings& settings,
       continue;
     }
     try {
-      observables.push_back(model::parse_observable(*text, friction));
+      observables.push_back(model::parse_observable(*text, friction, on_spring));
     } catch (const std::invalid_argument& error) {
       const std::string why = error.what();
       const bool named = texts.size() == 1 || why.starts_with(*text);
@@ -301,11 +301,42 @@ model::Start read_state(Settings& settings, const model::Scene& scene, double x,
   return {*level, v};
 }
 
+// On a spring: x,v,p, or a body that is held at p under any force.
+void read_start_on_spring(Settings& settings, const model::Scene& scene, const std::string& text,
+                          model::Start& start) {
+  using enum model::Start::Kind;
+  constexpr std::string_view held = "rest,";
+  const bool rests = text.starts_with(held);
+  const auto numbers = parse_numbers(rests ? text.substr(held.size()) : text);
+  if (text == "stationary") {
+    start.kind = stationary;
+  } else if (numbers && rests && numbers->size() == 1) {
+    start = {.kind = rest, .p = (*numbers)[0]};
+  } else if (numbers && !rests && numbers->size() == 3) {
+    start = {.v = (*numbers)[1], .kind = state, .p = (*numbers)[2], .x = (*numbers)[0]};
+    const auto* chain = scene.spring->chain();
+    if (chain == nullptr || chain->find(start.x)) return;
+    const double place =
+        std::clamp<double>(chain->place(start.x), chain->lowest(), chain->highest());
+    settings.refuse(
+        "start", "must start on a noise level",
+        fmt::format("take x = {:g}", chain->level(static_cast<int>(std::round(place)))));
+  } else {
+    settings.refuse("start",
+                    "does not say at which position of the spring the body is: it must be "
+                    "stationary, x,v,p or rest,p",
+                    "write for example -start 0,0,1 or -start rest,1");
+  }
+}
+
 // stationary, rest, s+, s- or x,v with x on a noise level.
 void read_start(Settings& settings, Request& request) {
   using enum model::Start::Kind;
   const std::string text = settings.text("start");
   model::Start& start = request.question.start;
+  if (request.scene.spring) {
+    return read_start_on_spring(settings, request.scene, text, start);
+  }
   const auto process = request.scene.meant();
   const bool up = process.starts_upwards(), down = process.starts_downwards();
   if ((text == "s+" && !up) || (text == "s-" && !down)) {
@@ -526,7 +557,8 @@ void read_question(Settings& settings, Request& request) {
   for (const auto* argument : cases::arguments()) {
     question.set_values(std::string(argument->option), values_of(*argument, settings, known));
   }
-  question.observables = read_observables(settings, request.scene.friction);
+  question.observables =
+      read_observables(settings, request.scene.friction, request.scene.spring != nullptr);
   question.accuracy = settings.real("accuracy");
   question.accuracy_given = settings.has("accuracy");
   if (!question.accuracy_given) {

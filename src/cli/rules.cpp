@@ -8,6 +8,7 @@
 #include "stickslip/case/displacement_rows.hpp"
 #include "stickslip/case/duration_rows.hpp"
 #include "stickslip/case/force_rows.hpp"
+#include "stickslip/case/passage_rows.hpp"
 #include "stickslip/cli/output.hpp"
 #include "stickslip/model/effect.hpp"
 #include "stickslip/simulation/walk.hpp"
@@ -149,9 +150,10 @@ class Rules {
       return q_.wants(entry->quantity) && entry->takes("start");
     });
     const bool state = q_.start.kind == model::Start::Kind::state;
-    report("start", starts && state, fmt::format("is one level, and {} has none", option),
-           r_.scene.spring ? "add -start stationary" : "add -start rest or -start stationary");
-    of_springs(starts && q_.start.kind == model::Start::Kind::rest);
+    report("start", starts && state && !q_.start.p,
+           fmt::format("is one level, and {} has none", option),
+           "add -start rest or -start stationary");
+    of_springs();
     const bool durations =
         q_.wants(cases::kPhaseDurations.quantity) || q_.wants(Quantity::duration_density);
     report("time", r_.scene.noise.gaussian && durations && std::ranges::count(q_.time, 0.0) > 0,
@@ -173,7 +175,7 @@ class Rules {
   }
 
   // What loses its meaning where a spring holds the body.
-  void of_springs(bool from_rest) {
+  void of_springs() {
     if (!r_.scene.spring) return;
     report("spring_stiffness", !method_.simulates && !r_.scene.solvable(),
            fmt::format("takes more than {} pairs of a force and a position",
@@ -185,8 +187,12 @@ class Rules {
                        "does not grow with time",
                        enumerate(travels, "and")),
            "leave that out");
-    report("start", from_rest, "does not say at which position of the spring the body rests",
-           "add -start stationary");
+    report("start",
+           q_.wants(cases::kPassageTimeDistribution.quantity) && q_.start.p &&
+               !r_.scene.noise.gaussian,
+           "has paths that reach the speed all at once, before the first jump of the noise: the "
+           "distribution of passage times from a state of a spring is found for -noise ou alone",
+           "take first_passage or passage_transform, or -start stationary");
   }
 
   // What the quantities need, or exclude.

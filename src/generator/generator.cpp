@@ -233,11 +233,12 @@ linalg::VecHandle KolmogorovOperator::value_at(int i, double v) const {
   return functional([&](const auto& add) { add_value_at(i, v, 1, add); });
 }
 
-linalg::VecHandle KolmogorovOperator::mean_at_zero(const std::vector<double>& p) const {
+linalg::VecHandle KolmogorovOperator::mean_at(const std::vector<double>& p, double v) const {
   const auto& chain = discretisation().process.noise;
   return functional([&](const auto& add) {
     for (int i = chain.lowest(); i <= chain.highest(); ++i) {
-      add_value_at(i, 0, p[i - chain.lowest()], add);
+      const double share = p[i - chain.lowest()];
+      if (share != 0) add_value_at(i, v, share, add);
     }
   });
 }
@@ -294,9 +295,10 @@ linalg::VecHandle KolmogorovOperator::values(const Observable& f, bool averaged)
   std::map<std::pair<double, double>, std::vector<double>> means;  // by y and v
   const bool by_means = averaged && chain.has_means();
   const auto value = [&](int i, double y, double v) {
-    if (!by_means) return f(chain.noise(i), y, v);
+    if (!by_means) return f(chain.place_of(i), y, v);
     auto& known = means[{y, v}];
-    if (known.empty()) known = chain.values([&](double x) { return f(x, y, v); }, averaged);
+    if (known.empty())
+      known = chain.values([&](const model::Place& x) { return f(x, y, v); }, averaged);
     return known[i - chain.lowest()];
   };
   return by_state([&](const State& s) {
@@ -320,7 +322,7 @@ linalg::VecHandle KolmogorovOperator::overlooked(const Observable& f) const {
       PetscInt at = first - states().local_begin();
       const auto of_speed = [&](double speed) {
         return nodes_along(branch).projected(n, [&](int i) {
-          return f(discretisation().process.noise.noise(sign * i), sign, sign * speed);
+          return f(discretisation().process.noise.place_of(sign * i), sign, sign * speed);
         });
       };
       for (const double value : discretisation().velocities->overlooked(of_speed)) {

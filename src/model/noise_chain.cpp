@@ -177,6 +177,8 @@ LevelTable LevelTable::of(const Projection& projection) {
   table.means_ = projection.means;
   table.position_ = projection.position;
   table.noise_ = projection.noise;
+  table.centre_ = projection.centre;
+  table.value_at_ = projection.value_at;
   if (table.has_positions()) {
     for (auto [part, of] : {std::pair{&table.upwards_, &projection.upwards},
                             {&table.downwards_, &projection.downwards}}) {
@@ -347,7 +349,7 @@ LevelTable LevelTable::mirrored() const {
   }
   if (means_) {
     other.means_ = [means = means_](const FunctionOfNoise& f) {
-      auto all = means([&f](double noise) { return f(-noise); });
+      auto all = means([&f](const Place& place) { return f(-place); });
       std::reverse(all.begin(), all.end());
       return all;
     };
@@ -358,6 +360,8 @@ LevelTable LevelTable::mirrored() const {
   other.lowest_ = -highest();
   other.mode_ = -mode_;
   other.mean_ = -mean_;
+  other.centre_ = -centre_;
+  other.value_at_ = {};
   std::swap(other.upper_tail_, other.lower_tail_);
   return other;
 }
@@ -422,7 +426,7 @@ double NoiseChain::place(double x) const {
 std::vector<double> NoiseChain::values(const FunctionOfNoise& f, bool averaged) const {
   if (averaged && has_means()) return table->means()(f);
   std::vector<double> values;
-  for (int i = lowest(); i <= highest(); ++i) values.push_back(f(noise(i)));
+  for (int i = lowest(); i <= highest(); ++i) values.push_back(f(place_of(i)));
   return values;
 }
 

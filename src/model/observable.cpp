@@ -85,12 +85,14 @@ std::string Unit::text() const {
 
 namespace {
 
-using Function = std::function<double(double, double, double)>;
+using Function = Observable::Function;
 
-std::string not_finite(const std::string& text, double value, double x, double y, double v) {
-  return fmt::format("{} is {} at x = {:g}, y = {:g}, v = {:g}; it must be finite in every state, "
-                     "with y = 0 and v = 0 at rest",
-                     text, value, x, y, v);
+std::string not_finite(const std::string& text, double value, const Place& x, double y, double v) {
+  const auto position = x.position() == 0 ? "" : fmt::format(", p = {:g}", x.position());
+  return fmt::format(
+      "{} is {} at x = {:g}, y = {:g}, v = {:g}{}; it must be finite in every state, "
+      "with y = 0 and v = 0 at rest",
+      text, value, x.x, y, v, position);
 }
 
 // Tried at rest, as motion starts and in slow motion, where every process has states like these.
@@ -107,23 +109,29 @@ void require_finite(const std::string& text, const Function& f, const Friction& 
   }
 }
 
-Observable from_expression(const std::string& text, const Friction& friction) {
-  const std::vector<std::string> variables{"x", "y", "v", "stick", "slide"};
+Observable from_expression(const std::string& text, const Friction& friction, bool on_spring) {
+  std::vector<std::string> variables{"x", "y", "v", "stick", "slide"};
+  if (on_spring) variables.emplace_back("p");
   const auto formula = std::make_shared<const Expression>(
       text, variables, Expression::Constants{{"mu_s", friction.mu_s}, {"mu_d", friction.mu_d}});
-  const auto f = [formula](double x, double y, double v) {
-    return (*formula)({x, y, v, y == 0 ? 1.0 : 0.0, y == 0 ? 0.0 : 1.0});
+  const auto f = [formula, on_spring](const Place& x, double y, double v) {
+    std::vector<double> values{x.x, y, v, y == 0 ? 1.0 : 0.0, y == 0 ? 0.0 : 1.0};
+    if (on_spring) values.push_back(x.position());
+    return (*formula)(values);
   };
   require_finite(text, f, friction);
   auto numbers = formula->numbers();
   numbers.insert(numbers.end(), {friction.mu_s, friction.mu_d});
   return {text,
-          [f, text](double x, double y, double v) {
+          [f, text](const Place& x, double y, double v) {
             const double value = f(x, y, v);
             if (std::isfinite(value)) return value;
             throw Failure(ExitStatus::bad_input, not_finite(text, value, x, y, v));
           },
-          formula, numbers};
+          formula,
+          numbers,
+          false,
+          on_spring};
 }
 
 bool within(double x, double threshold) {
@@ -138,7 +146,7 @@ const std::vector<std::string>& observable_names() {
   return names;
 }
 
-Observable parse_observable(const std::string& text, const Friction& friction) {
+Observable parse_observable(const std::string& text, const Friction& friction, bool on_spring) {
   const double mu_s = friction.mu_s;
   const std::map<std::string, Function> named{
       {"1", [](double, double, double) { return 1.0; }},
@@ -151,10 +159,10 @@ Observable parse_observable(const std::string& text, const Friction& friction) {
       {"|x|<=mu_s", [mu_s](double x, double, double) { return within(x, mu_s) ? 1.0 : 0.0; }}};
   const auto found = named.find(text);
   if (found != named.end()) return {text, found->second, {}, {}, true};
-  return from_expression(text, friction);
+  return from_expression(text, friction, on_spring);
 }
 
-FunctionOfSpeed section(std::shared_ptr<const Observable> f, double x, double sign) {
+FunctionOfSpeed section(std::shared_ptr<const Observable> f, const Place& x, double sign) {
   return [f = std::move(f), x, sign](double speed) {
     try {
       return (*f)(x, sign, sign * speed);
@@ -173,10 +181,12 @@ class Examination {
       : f_(std::make_shared<const Observable>(f)), reach_(reach) {}
 
   /// The breaks on a level with sign v = sign.
-  std::vector<Break> look(double x, double sign) {
+  std::vector<Break> look(const Place& x, double sign) {
     Shape shape;
-    if (f_->formula) shape = shape_of(*f_->formula, {x, sign, 0, 0, 1}, 2, sign, reach_);
-    if (!shape.resolved) refuse(fmt::format("changes too often to be resolved (x = {:g})", x));
+    std::vector<double> state{x.x, sign, 0, 0, 1};
+    if (f_->on_spring) state.push_back(x.position());
+    if (f_->formula) shape = shape_of(*f_->formula, state, 2, sign, reach_);
+    if (!shape.resolved) refuse(fmt::format("changes too often to be resolved (x = {:g})", x.x));
     auto speeds = shape.places;
     for (int n = 0; n < 40; ++n) speeds.push_back(reach_ * std::pow(0.7, n));
     const auto of_speed = section(f_, x, sign);
@@ -187,7 +197,7 @@ class Examination {
     }
     for (const Break& b : shape.breaks) {
       if (b.kind != Break::Kind::pole) continue;
-      refuse(fmt::format("is unbounded at v = {:.9g} (x = {:g})", sign * b.v, x));
+      refuse(fmt::format("is unbounded at v = {:.9g} (x = {:g})", sign * b.v, x.x));
     }
     merge(places, shape.places);
     return shape.breaks;
@@ -206,7 +216,7 @@ class Examination {
 };
 
 // Up to 17 levels evenly, and those next to the numbers of f.
-std::vector<double> probed_levels(const Scene& scene, const Observable& f) {
+std::vector<Place> probed_levels(const Scene& scene, const Observable& f) {
   const auto noise = scene.meant().noise;
   const double seen = std::min(noise.place(largest_force(scene) + scene.friction.mu_d), 1e9);
   const int highest = std::min(noise.highest(), static_cast<int>(seen)),
@@ -222,8 +232,8 @@ std::vector<double> probed_levels(const Scene& scene, const Observable& f) {
       levels.insert({static_cast<int>(std::floor(near)), static_cast<int>(std::ceil(near))});
     }
   }
-  std::vector<double> x;
-  for (int level : levels) x.push_back(noise.level(level));
+  std::vector<Place> x;
+  for (int level : levels) x.push_back(noise.place_of(level));
   std::sort(x.begin(), x.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
   return x;
 }
@@ -240,19 +250,21 @@ Observable friction_power(const Friction& friction) {
           !friction.weakens()};
 }
 
-void examine(Observable& f, const std::vector<double>& x, double step, double reach) {
+void examine(Observable& f, const std::vector<Place>& x, double step, double reach) {
   Examination examination(f, reach);
   constexpr std::array signs{1.0, -1.0};
   constexpr std::size_t too_many = 65;
   const auto [lowest, highest] = std::ranges::minmax(x);
   std::vector<Break> found;
-  for (double level : x) {
+  for (const Place& level : x) {
     for (double sign : signs) merge(found, examination.look(level, sign));
     if (found.size() < too_many) continue;
     examination.refuse(fmt::format("has {} or more jumps and kinks in v", too_many));
   }
-  for (double level : x) {
-    const double next = level > 0 ? level - step : level + step;
+  for (const Place& level : x) {
+    Place next = level;
+    next.x += level > 0 ? -step : step;
+    next.p *= 0.93;                                 // what moves with the position moves here
     if (next < lowest || next > highest) continue;  // the noise does not get there
     for (double sign : signs) {
       for (const Break& b : examination.look(next, sign)) {
@@ -260,7 +272,7 @@ void examine(Observable& f, const std::vector<double>& x, double step, double re
         if (std::any_of(found.begin(), found.end(), same)) continue;
         examination.refuse(fmt::format(
             "jumps or has a kink at v = {:.9g} where x = {:g}, and elsewhere for other x",
-            sign * b.v, next));
+            sign * b.v, next.x));
       }
     }
   }
@@ -270,7 +282,7 @@ void examine(Observable& f, const std::vector<double>& x, double step, double re
   f.places = examination.places;
   f.least = examination.least;
   f.most = examination.most;
-  for (double level : x) {
+  for (const Place& level : x) {
     f.least = std::min(f.least, f(level, 0, 0));
     f.most = std::max(f.most, f(level, 0, 0));
   }

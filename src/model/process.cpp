@@ -154,4 +154,20 @@ double largest_force(const Scene& scene) {
          std::abs(scene.bias) - std::min(along.mu_d, against.mu_d);
 }
 
+std::vector<double> levels_at(const NoiseChain& noise, const Start& start) {
+  const bool one = start.kind == Start::Kind::state;
+  if (!start.p && !one) return stationary_distribution(noise);
+  std::vector<double> shares(static_cast<std::size_t>(noise.count()));
+  if (!start.p) {
+    shares[static_cast<std::size_t>(start.level - noise.lowest())] = 1;
+    return shares;
+  }
+  const auto x = one ? std::optional(start.x) : std::nullopt;
+  const int side = start.v == 0 ? 0 : start.v > 0 ? 1 : -1;
+  for (const auto& [node, share] : noise.table->value_at(x, *start.p, side)) {
+    shares[static_cast<std::size_t>(node)] += share;
+  }
+  return shares;
+}
+
 }  // namespace stickslip::model

@@ -46,6 +46,25 @@ struct Positions {
     }
   }
 
+  /// The shares of nodes in the value of a function of the position, seen from that side where
+  /// elements meet (0: halfway between both); none beyond the elements.
+  [[nodiscard]] std::vector<Shown::Share> value_at(double at, int side) const {
+    std::vector<Shown::Share> shares;
+    const double close = 1e-9 * (ends_.back() - ends_.front());
+    for (std::size_t e = 0; e + 1 < ends_.size(); ++e) {
+      if (at < ends_[e] - close || at > ends_[e + 1] + close) continue;
+      const bool lower = at < ends_[e] + close && e > 0,
+                 upper = at > ends_[e + 1] - close && e + 2 < ends_.size();
+      if ((lower && side < 0) || (upper && side > 0)) continue;
+      const double part = (lower || upper) && side == 0 ? 0.5 : 1,
+                   t = (2 * at - ends_[e] - ends_[e + 1]) / (ends_[e + 1] - ends_[e]);
+      for (std::size_t k = 0; k < node_.size(); ++k) {
+        shares.push_back({static_cast<int>(e * node_.size() + k), part * cardinal(node_, k, t)});
+      }
+    }
+    return shares;
+  }
+
   /// By the position alone, at even steps; the node of the j-th position with n is place(n, j).
   template <class Place>
   [[nodiscard]] Shown shown(double shift, std::size_t count, const Place& place) const {
@@ -145,6 +164,92 @@ ForceLayout forces_of(const Thresholds& thresholds, double scale, double reach, 
   const int degree = 3 + (order - 2) / 2;
   made.mesh = force_mesh(special, end, longest, degree, degree);
   return made;
+}
+
+// The shares of nodes in the value at a force; none beyond the elements. Where bodies start, as
+// those see it that rest there.
+std::vector<Shown::Share> value_at(const AlongForce& x, double z) {
+  std::vector<Shown::Share> shares;
+  constexpr double inner = 1 - 1e-12;
+  if (z < x.z.front() || z > x.z.back()) return shares;
+  const auto& [first, element] = x.element_at(inner * z);
+  for (std::size_t n = 0; n < element.z.size(); ++n) {
+    shares.push_back({first + static_cast<int>(n), element.cardinal(n, z)});
+  }
+  return shares;
+}
+
+// The same on average over normally distributed forces.
+std::vector<Shown::Share> mean_over(const AlongForce& x, double mean, double deviation) {
+  const auto shares =
+      x.means([&](double z) { return normal_weight((z - mean) / deviation) / deviation; });
+  std::vector<Shown::Share> all;
+  for (std::size_t a = 0; a < shares.size(); ++a) {
+    all.push_back({static_cast<int>(a), shares[a] * x.w[a]});
+  }
+  return all;
+}
+
+struct Units {
+  double force;  // in units of which elements end
+  double stiffness, centre, deviation;
+};
+
+using ValueAt = decltype(Projection::value_at);
+
+Means means_of_coloured(std::shared_ptr<const AlongForce> x, std::shared_ptr<const Positions> y,
+                        const Units& by) {
+  return [x = std::move(x), y = std::move(y), by](const FunctionOfNoise& f) {
+    const auto& p = y->p;
+    std::vector<double> all(x->w.size() * p.size());
+    for (std::size_t j = 0; j < p.size(); ++j) {
+      const auto means = x->means([&](double z) {
+        return f({by.force * z + by.stiffness * p[j], p[j], by.centre});
+      });
+      for (std::size_t a = 0; a < means.size(); ++a) all[a * p.size() + j] = means[a];
+    }
+    return all;
+  };
+}
+
+ValueAt values_of_coloured(std::shared_ptr<const AlongForce> x, std::shared_ptr<const Positions> y,
+                           const Units& by) {
+  return
+      [x = std::move(x), y = std::move(y), by](std::optional<double> noise, double at, int side) {
+        const double p = at - by.centre, held = by.stiffness * p;
+        const auto across = static_cast<int>(y->p.size());
+        std::vector<Shown::Share> all;
+        for (const auto& [a, share] :
+             noise ? value_at(*x, (*noise - held) / by.force)
+                   : mean_over(*x, -held / by.force, by.deviation / by.force)) {
+          for (const auto& [j, part] : y->value_at(p, side)) {
+            all.push_back({a * across + j, share * part});
+          }
+        }
+        return all;
+      };
+}
+
+// A body at rest is seen where it is held: on the side of less force.
+ValueAt values_of_chain(std::shared_ptr<const Positions> y, const Units& by,
+                        std::shared_ptr<const NoiseChain> chain, std::vector<std::size_t> place) {
+  const auto law = stationary_distribution(*chain);
+  return [y = std::move(y), by, chain = std::move(chain), place = std::move(place),
+          law](std::optional<double> noise, double at, int side) {
+    const double p = at - by.centre;
+    const auto found = noise ? chain->find(*noise) : std::nullopt;
+    std::vector<Shown::Share> all;
+    for (int n = chain->lowest(); n <= chain->highest(); ++n) {
+      if (noise && n != found) continue;
+      const auto level = static_cast<std::size_t>(n - chain->lowest());
+      const int towards = side != 0 ? side : chain->level(n) > by.stiffness * p ? 1 : -1;
+      for (const auto& [j, part] : y->value_at(p, towards)) {
+        const auto node = place[level * y->p.size() + static_cast<std::size_t>(j)];
+        all.push_back({static_cast<int>(node), noise ? part : law[level] * part});
+      }
+    }
+    return all;
+  };
 }
 
 // Of positions, by order.
@@ -282,7 +387,9 @@ Projection Spring::of_coloured(const Thresholds& thresholds, int order) const {
   const ForceLayout grid = forces_of(thresholds, scale, reach(order), order);
   const auto kept = std::make_shared<AlongForce>(grid.mesh, grid.cuts, even_weight);
   AlongForce& x = *kept;
-  const Positions y(ends_of_positions(thresholds, order), nodes_of_element(order), false);
+  const auto kept_y = std::make_shared<const Positions>(ends_of_positions(thresholds, order),
+                                                        nodes_of_element(order), false);
+  const Positions& y = *kept_y;
   Projection made;
   made.even = made.reversed = thresholds.alike_both_ways();
   if (made.even) symmetrise(x);
@@ -323,14 +430,9 @@ Projection Spring::of_coloured(const Thresholds& thresholds, int order) const {
   made.intensity = made.peak_intensity = noise_.deviation * noise_.deviation * noise_.tau;
   made.step = grid.finest * scale;
   made.rate = 2 * diffusion / (grid.finest * grid.finest);
-  made.means = [kept, scale, k, p = y.p](const FunctionOfNoise& f) {
-    std::vector<double> all(kept->w.size() * p.size());
-    for (std::size_t j = 0; j < p.size(); ++j) {
-      const auto means = kept->means([&](double z) { return f(scale * z + k * p[j]); });
-      for (std::size_t a = 0; a < means.size(); ++a) all[a * p.size() + j] = means[a];
-    }
-    return all;
-  };
+  made.centre = body_.bias / k;
+  made.means = means_of_coloured(kept, kept_y, {scale, k, made.centre, noise_.deviation});
+  made.value_at = values_of_coloured(kept, kept_y, {scale, k, made.centre, noise_.deviation});
   made.shown = shown_by(x, y.p);
   made.by_position = y.shown(body_.bias / k, along,
                              [across](std::size_t a, std::size_t j) { return a * across + j; });
@@ -339,7 +441,9 @@ Projection Spring::of_coloured(const Thresholds& thresholds, int order) const {
 
 Projection Spring::of_chain(const Thresholds& thresholds, int order) const {
   const double k = body_.stiffness;
-  const Positions y(ends_of_positions(thresholds, order), nodes_of_element(order), true);
+  const auto kept_y = std::make_shared<const Positions>(ends_of_positions(thresholds, order),
+                                                        nodes_of_element(order), true);
+  const Positions& y = *kept_y;
   const std::size_t levels = static_cast<std::size_t>(chain_->count()), across = y.p.size();
   const auto p = stationary_distribution(*chain_);
   struct Node {
@@ -382,6 +486,8 @@ Projection Spring::of_chain(const Thresholds& thresholds, int order) const {
   made.deviation = chain_->standard_deviation();
   made.intensity = chain_->intensity();
   made.peak_intensity = chain_->tail_intensity();
+  made.centre = body_.bias / k;
+  made.value_at = values_of_chain(kept_y, {1, k, made.centre, 0}, chain_, place);
   made.step = chain_->step();
   made.rate = chain_->rate();
   made.by_position = y.shown(body_.bias / k, levels, [&](std::size_t level, std::size_t j) {

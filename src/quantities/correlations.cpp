@@ -51,8 +51,7 @@ ReducedModel::Nature nature_of(const model::Start& start) {
 }
 
 linalg::VecHandle start_on(const KolmogorovOperator& a, const model::Start& start) {
-  if (start.kind == model::Start::Kind::state) return a.value_at(start.level, start.v);
-  return a.mean_at_zero(model::stationary_distribution(a.discretisation().process.noise));
+  return a.mean_at(model::levels_at(a.discretisation().process.noise, start), start.v);
 }
 
 bool counts(Vec functional) {

@@ -104,10 +104,10 @@ Transport transport(const generator::Discretisation& killed, int level, double v
 
 // The time before which nobody arrives from a start that is not stationary, as forces between those
 // of the lowest and the highest level make nobody faster than these two; infinite beyond `longest`.
-// 0 on grids.
+// 0 on grids and on springs.
 double earliest_arrival(const generator::Discretisation& killed, const generator::SystemKey& key,
                         const model::Start& start, double longest) {
-  if (killed.velocities->keeps_origin()) return 0;
+  if (killed.velocities->keeps_origin() || start.p) return 0;
   const auto& process = killed.process;
   const double v = start.kind == model::Start::Kind::state ? start.v : 0;
   return std::min(arrival(process, key, process.noise.lowest(), v, longest),
@@ -125,7 +125,8 @@ struct Unturned {
 // arrives after t_i, and with the probability p_i exp(-rate_i t_i), rate_i the largest one at which
 // levels of its force are left for others, as if all were left at that rate: of those left more
 // slowly a part. On the elements it is transported by the matrix of its force alone. What has less
-// than `least` of the probability is left out. Zero on grids, which are chains of their own.
+// than `least` of the probability is left out. Zero on grids, which are chains of their own, and on
+// springs, whose noise has continuous paths.
 // `killed` kills at the speed of `key`. O(size^3) for each level, size that of the elements below
 // the speed.
 std::vector<Unturned> before_first_jump(const generator::Discretisation& killed,
@@ -136,7 +137,7 @@ std::vector<Unturned> before_first_jump(const generator::Discretisation& killed,
   const auto levels = model::stationary_distribution(process.noise);
   const double longest = 10 * *std::ranges::max_element(time);
   std::vector<Unturned> all(time.size());
-  if (killed.velocities->keeps_origin()) return all;
+  if (killed.velocities->keeps_origin() || start.p) return all;
   for (int i = process.noise.lowest(); i <= process.noise.highest(); ++i) {
     const double p = state ? (i == start.level ? 1 : 0)
                            : levels[static_cast<std::size_t>(i - process.noise.lowest())],
@@ -196,8 +197,16 @@ StartingPoint starting_point(generator::Systems& systems, double speed, const mo
   const auto& process = a.discretisation().process;
   const int lowest = process.lowest_static(), highest = process.highest_static();
   if (start.kind == stationary) return stationary_start(systems, speed, a);
+  if (start.p) {
+    const auto shares = model::levels_at(process.noise, start);
+    ByLevel resting = sticking.each(0);
+    for (int i = lowest; start.v == 0 && i <= highest; ++i) {
+      resting[i - lowest] = shares[i - process.noise.lowest()];
+    }
+    return {a.mean_at(shares, start.v), std::move(resting)};
+  }
   if (start.kind == rest) {
-    return {a.mean_at_zero(model::stationary_distribution(process.noise)), sticking.stationary()};
+    return {a.mean_at(model::stationary_distribution(process.noise)), sticking.stationary()};
   }
   ByLevel at_rest = sticking.each(0);
   const bool rests = start.v == 0 && lowest <= start.level && start.level <= highest;
@@ -565,7 +574,7 @@ FirstPassage first_passage(generator::Systems& systems, const Starts& starts, do
   const StickingPhases sticking(process, starts.levels, process.symmetric());
   const ByLevel at_rest = sticking.stationary();
   const auto nu = occupations_from(system, starts.levels,
-                                   a.mean_at_zero(model::stationary_distribution(process.noise)));
+                                   a.mean_at(model::stationary_distribution(process.noise)));
   const UntilPassage until(a, sticking, at_rest, nu, &linalg::Solution::x),
       roughly(a, sticking, at_rest, nu, &linalg::Solution::correction);
   const auto mean = [&starts](const std::vector<double>& by_start) {

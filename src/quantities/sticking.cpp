@@ -112,7 +112,8 @@ Integral integral(const StationaryDistribution& distribution, double defect,
   const auto &now = distribution.excursion().stick_time,
              &before = distribution.uncorrected().stick_time;
   const bool averaged = f.formula != nullptr;
-  const auto values = process.noise.values([&](double x) { return part(x, 0, 0); }, averaged);
+  const auto values =
+      process.noise.values([&](const model::Place& x) { return part(x, 0, 0); }, averaged);
   double change = 0, size = 0;
   for (std::size_t n = 0; n < now.size(); ++n) {
     const int level = process.lowest_static() + static_cast<int>(n);

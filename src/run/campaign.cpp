@@ -133,7 +133,8 @@ void add_question(const cases::Question& question, Identity& found) {
   for (const auto& [option, value] :
        {std::pair{"observable", text(observables)},
         {"passage", fmt::format("{}", static_cast<int>(question.passage))},
-        {"start", fmt::format("{} {} {}", static_cast<int>(start.kind), start.level, start.v)}}) {
+        {"start", fmt::format("{} {} {}{}", static_cast<int>(start.kind), start.level, start.v,
+                              start.p ? fmt::format(" {} {}", start.x, *start.p) : "")}}) {
     if (options.contains(option)) found.emplace_back(fmt::format("-{}", option), value);
   }
   for (const auto* argument : cases::arguments()) {

@@ -283,6 +283,28 @@ double relative_work(const model::Scene& scene, const Resolution& resolution) {
   return work;
 }
 
+namespace {
+
+void require_position_within(const cases::Case& given, const model::NoiseChain& noise,
+                             double v_max) {
+  const model::Start& start = given.question.start;
+  const auto shares = model::levels_at(noise, start);
+  const bool known = std::ranges::any_of(shares, [](double share) { return share != 0; });
+  if (known && std::abs(start.v) <= v_max) return;
+  double low = kInfinity, high = -kInfinity, force = 0;
+  for (int i = noise.lowest(); i <= noise.highest(); ++i) {
+    low = std::min(low, noise.position(i));
+    high = std::max(high, noise.position(i));
+    force = std::max(force, std::abs(noise.level(i)));
+  }
+  throw BadInput(fmt::format(
+      "-start: is further out than bodies are followed at -accuracy {:g}; take p in [{:.3g}, "
+      "{:.3g}] with |x - K (p - g/K)| at most {:.3g}, and |v| at most {:.3g}",
+      given.question.accuracy, low, high, force, v_max));
+}
+
+}  // namespace
+
 void require_start_within(const cases::Case& given, const Resolution& first) {
   const cases::Question& question = given.question;
   const auto starts = [&](const cases::Entry* entry) {
@@ -290,8 +312,11 @@ void require_start_within(const cases::Case& given, const Resolution& first) {
   };
   if (std::ranges::none_of(cases::entries(), starts)) return;
   const auto noise = given.scene.process(first.levels).noise;
-  const int level = question.start.level;
-  const double x = given.scene.meant().noise.level(level), v = question.start.v;
+  const model::Start& start = question.start;
+  const int level = start.level;
+  const double v = start.v;
+  if (start.p) return require_position_within(given, noise, first.v_max);
+  const double x = given.scene.meant().noise.level(level);
   const auto refuse = [&](const char* what, double largest, const char* more) {
     throw BadInput(fmt::format("-start = {:g},{:g}: starts beyond the largest {} on which the mean "
                                "is computed at -accuracy {:g}; take |{}| at most {:g}, or {}",

@@ -75,7 +75,7 @@ generator::Integrands integrands_of(const cases::Question& question, double phas
     const auto f = std::make_shared<const model::Observable>(observable);
     integrands.breaks.insert(integrands.breaks.end(), f->breaks.begin(), f->breaks.end());
     model::merge(integrands.places, f->places);
-    for (double x : f->levels) {
+    for (const auto& x : f->levels) {
       for (double sign : {1.0, -1.0}) {
         integrands.functions.emplace_back(model::section(f, x, sign));
       }

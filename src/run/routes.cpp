@@ -80,7 +80,7 @@ std::vector<Average> averages(const Problem& problem) {
       all.push_back({quantities::blank(row, observable), part, given});
     };
     const auto within_phase = [f](const model::Observable::Function& in) {
-      return [=](double x, double y, double v) { return f(x, y, v) * in(x, y, v); };
+      return [=](const model::Place& x, double y, double v) { return f(x, y, v) * in(x, y, v); };
     };
     append(cases::kPi, f, -1);
     append(cases::kPiStick, within_phase(stick), kStick);

@@ -401,8 +401,11 @@ class GaussianSource final : public PathSource {
                             : bridge(random, from.x, to.x, time, share);
     e.noise_square += time * x * x;
     e.within += std::abs(x) <= within_ ? time : 0;
+    const double left = (1 - share) * time * (v + to.v) / 2;  // to where the step ends
+    const model::Place place =
+        kTied<Flow> ? model::Place{x, p_ - left - centre_, centre_} : model::Place{x};
     for (std::size_t f = 0; f < wanted_.observables.size(); ++f) {
-      e.integrals[f].*part += time * wanted_.observables[f](x, y, v);
+      e.integrals[f].*part += time * wanted_.observables[f](place, y, v);
     }
   }
 

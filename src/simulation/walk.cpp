@@ -326,13 +326,19 @@ class Source final : public PathSource {
   void observe_slide(Excursion& e, double time, double speed, double force, int i, int sign) {
     place_ = std::fmod(place_ + 0.6180339887498949, 1);
     const double at = place_ * time;
-    const double then = flow(sign).move(speed, force, at, false).end;
-    observe(e, &Integrals::slide, time, at, levels_.level(i), sign, sign * then);
+    const auto then = flow(sign).move(speed, force, at, kTied<Flow>);
+    observe(e, &Integrals::slide, time, at, place_at(i, sign * then.path), sign, sign * then.end);
+  }
+  // On level i, a distance further than the piece began.
+  [[nodiscard]] model::Place place_at(int i, double further) const {
+    const double x = levels_.level(i);
+    if constexpr (!kTied<Flow>) return x;
+    return {x, p_ + further - centre_, centre_};
   }
 
   // A piece of `time`, with the state at `at` after its start; at rest nothing changes.
-  void observe(Excursion& e, double Integrals::*part, double time, double at, double x, double y,
-               double v) const {
+  void observe(Excursion& e, double Integrals::*part, double time, double at, const model::Place& x,
+               double y, double v) const {
     const double begun = e.slide + e.stick;
     for (std::size_t f = 0; f < wanted_.observables.size(); ++f) {
       const double value = wanted_.observables[f](x, y, v);
@@ -355,7 +361,7 @@ class Source final : public PathSource {
     int i = e.entry;
     for (;;) {
       if (!wanted_.observables.empty()) {
-        observe(e, &Integrals::stick, wait, 0, levels_.level(i), 0, 0);
+        observe(e, &Integrals::stick, wait, 0, place_at(i, 0), 0, 0);
       }
       e.stick += wait;
       if constexpr (kTied<Flow>) follow_position(e, p_, levels_.level(i), 0, {{.time = wait}});

@@ -1,11 +1,12 @@
 """A body on a spring: values of other methods, what must hold whatever the numbers, and what is refused."""
 
+import json
 import math
 
 import h5py
 import numpy
 
-from running import Case
+from running import Case, run
 
 SPRING = ("-spring_stiffness", "1", "-mu_d", "0.5")
 TELEGRAPH = ("-noise", "telegraph", "-telegraph_amplitude", "1.5", "-telegraph_rate", "0.5")
@@ -22,6 +23,11 @@ class Spring(Case):
             self.assertLessEqual(abs(found["value"] - value), found["error"] + known, (options, key))
             self.assertLess(found["error"], 1e-2 * abs(value), (options, key))
         return results
+
+    def roughly(self, *options):
+        """Results of a coarse discretisation, whether or not they are as accurate as asked for."""
+        run(*options, "-degree", "4", "-accuracy", "1e-2", "-summary", "rough.json", folder=self.folder)
+        return json.loads((self.folder / "rough.json").read_text())["results"]
 
     # By a program that solves all states of (f, p, v) at once with sparse factors, on meshes of its own.
     def test_coloured_noise(self):
@@ -102,6 +108,35 @@ class Spring(Case):
         self.assertLess(abs(many["P_stick"]["value"] - 0.2749), 4 * many["P_stick"]["error"] / 1.96)
         self.assertGreater(abs(many["P_stick"]["value"] - 0.31024), 6 * many["P_stick"]["error"] / 1.96)
 
+    def test_functions_of_the_position(self):
+        """Those that moments have by sums of their own; and beside simulation."""
+        for bias, friction in ((0, ()), (0.3, ("-mu_s_minus", "1.2", "-mu_d_minus", "0.6"))):
+            asked = (*SPRING, *TELEGRAPH, "-bias", bias, *friction, "-quantities", "moments,averages",
+                     "-observable", "p;p^2;x*p;stick*p^2")
+            right = self.roughly(*asked)
+            for f, key in {"p": "E_P", "p^2": "E_P2", "x*p": "E_XP"}.items():
+                self.assertAlmostEqual(right[f"pi({f})"]["value"], right[key]["value"], delta=1e-12, msg=f)
+            self.assertLess(right["pi(stick*p^2)"]["value"], 0.9 * right["pi(p^2)"]["value"])
+        found = self.summary(*asked, "-route", "monte_carlo", "-excursions", "1000")["results"]
+        for f in ("p", "p^2", "x*p", "stick*p^2"):
+            off = abs(found[f"pi({f})"]["value"] - right[f"pi({f})"]["value"])
+            self.assertLess(off, 4 * found[f"pi({f})"]["error"] / 1.96 + 1e-2, f)
+
+    # By a program that moves 4e5 bodies each by closed forms from one jump of the noise to the next.
+    def test_starts_from_a_position(self):
+        mean = self.roughly(*SPRING, *TELEGRAPH, "-quantities", "expectation", "-observable", "p", "-time", "1", "-start",
+                            "-1.5,0.3,0.8")["E(p)"]
+        self.assertLess(abs(mean["value"][0] - 0.40914), mean["error"][0] + 4 * 3.1e-4)
+        passage = self.roughly(*SPRING, *TELEGRAPH, "-quantities", "first_passage", "-velocity", "0.8", "-start",
+                               "1.5,0,0.9")
+        mean = passage["first_passage_mean"]
+        self.assertLess(abs(mean["value"][0] - 3.4846), mean["error"][0] + 4 * 6.7e-3)
+        # Mirror images, one held under any noise.
+        asked = (*SPRING, *TELEGRAPH, "-quantities", "first_passage", "-velocity", "0.8", "-start")
+        for start, mirrored in (("1.5,0.2,-0.7", "-1.5,-0.2,0.7"), ("rest,0.9", "rest,-0.9")):
+            means = [self.roughly(*asked, at)["first_passage_mean"]["value"][0] for at in (start, mirrored)]
+            self.assertAlmostEqual(means[0] / means[1], 1, delta=1e-9)
+
     def test_given_force(self):
         """A constant force on a body without drag: half a swing to twice the distance at which the spring holds it."""
         (self.folder / "record.csv").write_text("time,force\n0,1.9\n10,1.9\n")
@@ -120,7 +155,13 @@ class Spring(Case):
         self.refuse(*SPRING, "-quantities", "displacement", "-time", "1", "-start", "stationary",
                     message=("asks for displacement, and a spring keeps the body in one place",))
         self.refuse(*SPRING, "-quantities", "expectation", "-observable", "v^2", "-time", "1", "-start", "rest",
-                    message=("-start = rest: does not say at which position",))
+                    message=("-start = rest: does not say at which position", "write for example -start 0,0,1"))
+        self.refuse(*SPRING, *TELEGRAPH, "-quantities", "first_passage", "-velocity", "0.5", "-start", "-1.4,0,1",
+                    message=("-start = -1.4,0,1: must start on a noise level", "take x = -1.5"))
+        self.refuse(*SPRING, *TELEGRAPH, "-quantities", "passage_distribution", "-velocity", "0.5", "-time", "1", "-start",
+                    "1.5,0,0", message=("has paths that reach the speed all at once",))
+        self.refuse(*SPRING, *TELEGRAPH, "-quantities", "first_passage", "-velocity", "0.5", "-start", "1.5,0,9",
+                    message=("is further out than bodies are followed", "take p in [-2.08, 2.08]"))
         self.refuse(*SPRING, "-route", "lambda", message=("-route = lambda: needs a noise of levels alone",))
         self.refuse(*SPRING, "-route", "monte_carlo", "-quantities", "spectrum", "-omega", "1",
                     message=("asks for spectrum, which are not simulated with -spring_stiffness",))

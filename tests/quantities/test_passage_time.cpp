@@ -46,7 +46,7 @@ TEST_CASE("passage time: both moments solve their backward equations", "[paralle
           CHECK(found.variance.value == Approx(second - mean * mean).epsilon(tolerance));
         };
         const auto p = model::stationary_distribution(solved.systems.process().noise);
-        compare(kRest, a.mean_at_zero(p), 1e-8);
+        compare(kRest, a.mean_at(p), 1e-8);
         compare({1, 0}, a.value_at(1, 0), 1e-8);
         if (!d.velocities->keeps_origin()) {  // squares of what is interpolated
           compare({2, 0.1}, a.value_at(2, 0.1), 0.02);

@@ -119,7 +119,7 @@ TEST_CASE("first passage: the mean time solves its backward equation", "[paralle
         auto& whole = solved.systems.at(key);
         const auto ones = whole.a().values([](double, double, double) { return 1.0; });
         const auto time = whole.factors().solve(ones);
-        const auto rest = whole.a().mean_at_zero(model::stationary_distribution(process.noise));
+        const auto rest = whole.a().mean_at(model::stationary_distribution(process.noise));
         CHECK(linalg::dot(solved.distribution.starts_on(whole.a()), time.x) ==
               Approx(found.from_slide.value).epsilon(1e-9));
         CHECK(linalg::dot(rest, time.x) == Approx(found.from_rest.value).epsilon(1e-9));

@@ -106,9 +106,9 @@ class KolmogorovOperator {
   /// The functional u -> u(x_i, v), v = 0 being s+- for |i| > k and rest for |i| <= k;
   /// symmetry-reduced, from the branch that is kept. Static states must be kept. Collective.
   [[nodiscard]] linalg::VecHandle value_at(int i, double v) const;
-  /// u -> sum_i p_i u(x_i, 0), p by level from the lowest up, in the same sense. Collective.
+  /// u -> sum_i p_i u(x_i, v), p by level from the lowest up, in the same sense. Collective.
   /// O(levels).
-  [[nodiscard]] linalg::VecHandle mean_at_zero(const std::vector<double>& p) const;
+  [[nodiscard]] linalg::VecHandle mean_at(const std::vector<double>& p, double v = 0) const;
 
   /// nu -> -nu A_us, from the lowest static level up: the rate at which an occupation flows into
   /// each static level; the same on all ranks. StaticPhase::killing only. Collective.
@@ -132,7 +132,7 @@ class KolmogorovOperator {
   /// f(x, y, v) on all states, projected on noise nodes: products with occupations are those of
   /// the measures that they stand for, whatever f is; on nodes of noise of continuous paths if f is
   /// smooth, or `averaged`. Collective. O(levels velocity nodes), averaged a hundred times that.
-  using Observable = std::function<double(double x, double y, double v)>;
+  using Observable = model::Observable::Function;
   [[nodiscard]] linalg::VecHandle values(const Observable& f, bool averaged = false) const;
   /// f(state) on all states. Collective.
   template <class Function>
@@ -181,8 +181,10 @@ class KolmogorovOperator {
 [[nodiscard]] inline KolmogorovOperator::Observable part_of(const model::Observable& f,
                                                             Symmetry symmetry) {
   switch (symmetry) {
-  case Symmetry::even: return [&f](double x, double y, double v) { return f.even(x, y, v); };
-  case Symmetry::odd: return [&f](double x, double y, double v) { return f.odd(x, y, v); };
+  case Symmetry::even:
+    return [&f](const model::Place& x, double y, double v) { return f.even(x, y, v); };
+  case Symmetry::odd:
+    return [&f](const model::Place& x, double y, double v) { return f.odd(x, y, v); };
   case Symmetry::none: break;
   }
   return f.value;

@@ -63,7 +63,20 @@ struct Shown {
   }
 };
 
-using FunctionOfNoise = std::function<double(double noise)>;
+/// The noise where an observable is seen and, of a body on a spring, its position about `centre`,
+/// g/K. Functions of the noise alone take it for a number.
+struct Place {
+  double x, p = 0, centre = 0;
+
+  Place(double noise) : x(noise) {}
+  Place(double noise, double about_centre, double at) : x(noise), p(about_centre), centre(at) {}
+  operator double() const { return x; }
+  [[nodiscard]] double position() const { return centre + p; }
+  /// The mirror image.
+  Place operator-() const { return {-x, -p, centre}; }
+};
+
+using FunctionOfNoise = std::function<double(const Place& place)>;
 
 /// The means of a function of the noise under what each node stands for, by place.
 using Means = std::function<std::vector<double>(const FunctionOfNoise& f)>;
@@ -78,6 +91,11 @@ struct Projection {
   /// each over all places; the position of each node, and the noise without the spring there.
   std::vector<Transition> upwards = {}, downwards = {};
   std::vector<double> position = {}, noise = {};
+  double centre = 0;  ///< of the positions
+  /// The shares of nodes in the value of a function at one position, of a body at rest or in motion
+  /// towards a side (0, 1, -1): under a noise, or on average over its stationary distribution.
+  std::function<std::vector<Shown::Share>(std::optional<double> noise, double p, int side)>
+      value_at = {};
   double deviation = 0;                      ///< of the noise itself [force]
   double intensity = 0, peak_intensity = 0;  ///< at the frequency 0, and the largest
   double step = 0;                           ///< of the finest element [force]
@@ -190,6 +208,16 @@ class LevelTable {
   [[nodiscard]] double noise(int i) const {
     return has_positions() ? noise_[static_cast<std::size_t>(i - lowest_)] : at(i).x;
   }
+  [[nodiscard]] Place place_of(int i) const {
+    return has_positions() ? Place{noise(i), position(i) - centre_, centre_} : Place(noise(i));
+  }
+  [[nodiscard]] double centre() const { return centre_; }
+  /// Of a body with a position, see Projection; nodes count from the lowest level. None where there
+  /// is no such noise or position.
+  [[nodiscard]] std::vector<Shown::Share> value_at(std::optional<double> noise, double p,
+                                                   int side) const {
+    return value_at_(noise, p, side);
+  }
   /// Means under what nodes stand for; empty for levels.
   [[nodiscard]] const Means& means() const { return means_; }
   /// Probability of level i against that of level i - 1.
@@ -261,6 +289,8 @@ class LevelTable {
   Means means_;
   std::vector<std::vector<Jump>> upwards_, downwards_;  // by place, per distance
   std::vector<double> position_, noise_;
+  double centre_ = 0;
+  decltype(Projection::value_at) value_at_;
 };
 
 /// Levels that are no such chain: what() says why, row() in which of them, from 0; in none
@@ -314,6 +344,10 @@ struct NoiseChain {
   [[nodiscard]] double position(int i) const { return table->position(i); }
   /// The noise alone, without a spring.
   [[nodiscard]] double noise(int i) const { return table ? table->noise(i) : i * delta; }
+  /// The same, with the position where the body has one.
+  [[nodiscard]] Place place_of(int i) const {
+    return table ? table->place_of(i) : Place(i * delta);
+  }
   /// Whether there are means under what nodes stand for.
   [[nodiscard]] bool has_means() const { return table && table->means(); }
   /// f of the noise on all levels, by place; `averaged`, of nodes its means under what they stand

@@ -156,18 +156,25 @@ struct Derivative {
 struct Start {
   enum class Kind {
     state,  ///< (x_level, v); v = 0 is rest on the static levels, and s+, s- or beyond otherwise
-    rest,   ///< X in its stationary distribution, V = 0
+    rest,   ///< X in its stationary distribution, V = 0, at the position p of a spring
     stationary  ///< the whole process in its stationary distribution
   };
   int level = 0;
   double v = 0;
   Kind kind = Kind::state;
+  /// On a spring, where x takes the place of the level.
+  std::optional<double> p = {};
+  double x = 0;
 };
+
+/// The shares of levels, from the lowest up, in the value of a function of x at the start, which is
+/// not stationary. With a position, under which levels are nodes, none beyond the positions.
+[[nodiscard]] std::vector<double> levels_at(const NoiseChain& noise, const Start& start);
 
 /// Whether (-X, -Y, -V) has the distribution of (X, Y, V) at all times from this start, so that
 /// means of odd functions, and of the displacement, are exactly 0.
 [[nodiscard]] inline bool mirrors_itself(const Process& process, const Start& start) {
-  return !process.drifts() && start.kind != Start::Kind::state;
+  return !process.drifts() && start.kind != Start::Kind::state && !start.p;
 }
 
 // Levels of a noise that have one force: jumps between them move no body otherwise.
