@@ -119,7 +119,7 @@ namespace {
 // On the levels k/4, |k| <= 8, and those between.
 Observable examined(const std::string& text, double reach = 20) {
   auto f = parse_observable(text, kFriction);
-  std::vector<double> x;
+  std::vector<stickslip::model::Place> x;
   for (int i = -8; i <= 8; ++i) x.push_back(i * 0.25);
   examine(f, x, 0.125, reach);
   return f;

@@ -31,7 +31,7 @@ cases::Case averages(const std::vector<std::string>& observables, const std::str
   cases::Case r = moments(law);
   r.question.quantities = {Quantity::resolvent};
   r.question.lambda = {0};
-  std::vector<double> x;
+  std::vector<model::Place> x;
   for (int i = -20; i <= 20; i += 2) x.push_back(0.25 * i);
   for (const auto& text : observables) {
     auto f = model::parse_observable(text, r.scene.friction);
