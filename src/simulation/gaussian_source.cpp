@@ -234,7 +234,7 @@ class GaussianSource final : public PathSource {
 
   // From rest, with the noise in its stationary distribution.
   void begin(RandomStream& random) override {
-    elapsed = k_ = 0;
+    elapsed_ = k_ = 0;
     p_ = centre_;
     for (double& z : normal_) z = random.normal();
     std::fill(now_.begin(), now_.end(), 0.0);
@@ -242,17 +242,17 @@ class GaussianSource final : public PathSource {
     Excursion none;
     none.integrals.resize(wanted_.observables.size());
     stick(random, none);
-    if (kTied<Flow>) elapsed = 0;
+    if (kTied<Flow>) elapsed_ = 0;
   }
 
   void follow_one(RandomStream& random, Excursion& e) override {
-    const double begun = elapsed;
+    const double begun = elapsed_;
     e = {.integrals = std::move(e.integrals)};
     e.integrals.assign(wanted_.observables.size(), {});
     e.upwards = sign_ > 0;
     slide(random, e);
     stick(random, e);
-    if (kTied<Flow>) elapsed = begun + e.slide;
+    if (kTied<Flow>) elapsed_ = begun + e.slide;
   }
 
   void slide(RandomStream& random, Excursion& e) {
@@ -358,7 +358,7 @@ class GaussianSource final : public PathSource {
       for (int c = 0; c <= r; ++c) sum += *factor++ * normal_[c];
       now_[r] = sum;
     }
-    elapsed += step.time;
+    elapsed_ += step.time;
     return now_[size_] / step.time;
   }
 
@@ -367,7 +367,7 @@ class GaussianSource final : public PathSource {
     for (int i = 0; i < size_; ++i) {
       now_[i] = before_[i] + share * (now_[i] - before_[i]) + noise_.b[i] * off;
     }
-    elapsed -= (1 - share) * steps_[k_].time;
+    elapsed_ -= (1 - share) * steps_[k_].time;
   }
 
   // The force also changed by `turn` along the piece, and the speed by `rise`.
@@ -465,11 +465,11 @@ class GaussianSource final : public PathSource {
 void PathSource::draw_from(int level, RandomStream& random, Excursion& e) {
   if (level == kPathBegins) {
     begin(random);
-    while (elapsed < span_) follow_one(random, e);
-    end_ = span_ * (2 + std::floor((elapsed - span_) / span_));
+    while (elapsed_ < span_) follow_one(random, e);
+    end_ = span_ * (2 + std::floor((elapsed_ - span_) / span_));
   }
   follow_one(random, e);
-  e.next = elapsed < end_ ? kPathBegins + 1 : kPathBegins;
+  e.next = elapsed_ < end_ ? kPathBegins + 1 : kPathBegins;
 }
 
 double span_of_sample(const model::Process& process) {

@@ -222,7 +222,7 @@ class Source final : public PathSource {
   // From rest where the spring holds the body without force.
   void begin(RandomStream& random) override {
     i_ = at_start_->draw(random.uniform());
-    elapsed = 0;
+    elapsed_ = 0;
     p_ = centre_;
     while (rests(i_)) i_ = levels_.next(i_, 1, random);
   }
@@ -239,7 +239,7 @@ class Source final : public PathSource {
     e.upwards = direction(i_) > 0;
     double wait = levels_.wait(i_, random);
     if (!rests(i_)) slide(random, e, wait, i_);
-    elapsed += e.slide;
+    elapsed_ += e.slide;
     sticking(random, e, wait);
     i_ = e.next;
   }

@@ -68,8 +68,10 @@ struct Shown {
 struct Place {
   double x, p = 0, centre = 0;
 
+  // NOLINTNEXTLINE(google-explicit-constructor): without a spring the noise is the place
   Place(double noise) : x(noise) {}
   Place(double noise, double about_centre, double at) : x(noise), p(about_centre), centre(at) {}
+  // NOLINTNEXTLINE(google-explicit-constructor): and the place the noise
   operator double() const { return x; }
   [[nodiscard]] double position() const { return centre + p; }
   /// The mirror image.

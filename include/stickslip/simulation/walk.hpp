@@ -271,7 +271,7 @@ class PathSource : public ExcursionSource {
   void draw_from(int level, RandomStream& random, Excursion& e) override;
 
  protected:
-  double elapsed = 0;  ///< of the path
+  double elapsed_ = 0;  ///< of the path
 
  private:
   virtual void begin(RandomStream& random) = 0;  ///< at the start of a sliding phase
