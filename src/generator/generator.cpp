@@ -229,10 +229,6 @@ void KolmogorovOperator::add_value_at(int i, double v, double weight, const Add&
   }
 }
 
-linalg::VecHandle KolmogorovOperator::value_at(int i, double v) const {
-  return functional([&](const auto& add) { add_value_at(i, v, 1, add); });
-}
-
 linalg::VecHandle KolmogorovOperator::mean_at(const std::vector<double>& p, double v) const {
   const auto& chain = discretisation().process.noise;
   return functional([&](const auto& add) {

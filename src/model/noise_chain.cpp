@@ -361,7 +361,7 @@ LevelTable LevelTable::mirrored() const {
   other.mode_ = -mode_;
   other.mean_ = -mean_;
   other.centre_ = -centre_;
-  other.value_at_ = {};
+  other.value_at_ = {};  // starts are looked up in the noise as it is given
   std::swap(other.upper_tail_, other.lower_tail_);
   return other;
 }

@@ -65,9 +65,9 @@ struct Positions {
     return shares;
   }
 
-  /// By the position alone, at even steps; the node of the j-th position with n is place(n, j).
-  template <class Place>
-  [[nodiscard]] Shown shown(double shift, std::size_t count, const Place& place) const {
+  /// By the position alone, at even steps; the node of the j-th position with n is node_of(n, j).
+  template <class NodeOf>
+  [[nodiscard]] Shown shown(double shift, std::size_t count, const NodeOf& node_of) const {
     constexpr int steps = 200;
     const double step = (ends_.back() - ends_.front()) / steps;
     Shown shown;
@@ -81,7 +81,7 @@ struct Positions {
       for (std::size_t k = 0; k < node_.size(); ++k) {
         const double share = step * cardinal(node_, k, t) / (weight_[k] * half);
         for (std::size_t n = 0; n < count; ++n) {
-          shares.push_back({static_cast<int>(place(n, e * node_.size() + k)), share});
+          shares.push_back({static_cast<int>(node_of(n, e * node_.size() + k)), share});
         }
       }
     }
@@ -231,18 +231,18 @@ ValueAt values_of_coloured(std::shared_ptr<const AlongForce> x, std::shared_ptr<
 }
 
 // A body at rest is seen where it is held: on the side of less force.
-ValueAt values_of_chain(std::shared_ptr<const Positions> y, const Units& by,
+ValueAt values_of_chain(std::shared_ptr<const Positions> y, double stiffness, double centre,
                         std::shared_ptr<const NoiseChain> chain, std::vector<std::size_t> place) {
   const auto law = stationary_distribution(*chain);
-  return [y = std::move(y), by, chain = std::move(chain), place = std::move(place),
+  return [y = std::move(y), stiffness, centre, chain = std::move(chain), place = std::move(place),
           law](std::optional<double> noise, double at, int side) {
-    const double p = at - by.centre;
+    const double p = at - centre;
     const auto found = noise ? chain->find(*noise) : std::nullopt;
     std::vector<Shown::Share> all;
     for (int n = chain->lowest(); n <= chain->highest(); ++n) {
       if (noise && n != found) continue;
       const auto level = static_cast<std::size_t>(n - chain->lowest());
-      const int towards = side != 0 ? side : chain->level(n) > by.stiffness * p ? 1 : -1;
+      const int towards = side != 0 ? side : chain->level(n) > stiffness * p ? 1 : -1;
       for (const auto& [j, part] : y->value_at(p, towards)) {
         const auto node = place[level * y->p.size() + static_cast<std::size_t>(j)];
         all.push_back({static_cast<int>(node), noise ? part : law[level] * part});
@@ -431,10 +431,11 @@ Projection Spring::of_coloured(const Thresholds& thresholds, int order) const {
   made.step = grid.finest * scale;
   made.rate = 2 * diffusion / (grid.finest * grid.finest);
   made.centre = body_.bias / k;
-  made.means = means_of_coloured(kept, kept_y, {scale, k, made.centre, noise_.deviation});
-  made.value_at = values_of_coloured(kept, kept_y, {scale, k, made.centre, noise_.deviation});
+  const Units units{scale, k, made.centre, noise_.deviation};
+  made.means = means_of_coloured(kept, kept_y, units);
+  made.value_at = values_of_coloured(kept, kept_y, units);
   made.shown = shown_by(x, y.p);
-  made.by_position = y.shown(body_.bias / k, along,
+  made.by_position = y.shown(made.centre, along,
                              [across](std::size_t a, std::size_t j) { return a * across + j; });
   return made;
 }
@@ -487,10 +488,10 @@ Projection Spring::of_chain(const Thresholds& thresholds, int order) const {
   made.intensity = chain_->intensity();
   made.peak_intensity = chain_->tail_intensity();
   made.centre = body_.bias / k;
-  made.value_at = values_of_chain(kept_y, {1, k, made.centre, 0}, chain_, place);
+  made.value_at = values_of_chain(kept_y, k, made.centre, chain_, place);
   made.step = chain_->step();
   made.rate = chain_->rate();
-  made.by_position = y.shown(body_.bias / k, levels, [&](std::size_t level, std::size_t j) {
+  made.by_position = y.shown(made.centre, levels, [&](std::size_t level, std::size_t j) {
     return place[level * across + j];
   });
   return made;

@@ -109,9 +109,8 @@ double earliest_arrival(const generator::Discretisation& killed, const generator
                         const model::Start& start, double longest) {
   if (killed.velocities->keeps_origin() || start.p) return 0;
   const auto& process = killed.process;
-  const double v = start.kind == model::Start::Kind::state ? start.v : 0;
-  return std::min(arrival(process, key, process.noise.lowest(), v, longest),
-                  arrival(process, key, process.noise.highest(), v, longest));
+  return std::min(arrival(process, key, process.noise.lowest(), start.v, longest),
+                  arrival(process, key, process.noise.highest(), start.v, longest));
 }
 
 // What bodies that reach the speed before the force first changes, all at one time, add to density
@@ -133,15 +132,12 @@ std::vector<Unturned> before_first_jump(const generator::Discretisation& killed,
                                         const generator::SystemKey& key, const model::Start& start,
                                         const std::vector<double>& time, double least) {
   const auto& process = killed.process;
-  const bool state = start.kind == model::Start::Kind::state;
-  const auto levels = model::stationary_distribution(process.noise);
   const double longest = 10 * *std::ranges::max_element(time);
   std::vector<Unturned> all(time.size());
   if (killed.velocities->keeps_origin() || start.p) return all;
+  const auto levels = model::levels_at(process.noise, start);
   for (int i = process.noise.lowest(); i <= process.noise.highest(); ++i) {
-    const double p = state ? (i == start.level ? 1 : 0)
-                           : levels[static_cast<std::size_t>(i - process.noise.lowest())],
-                 v = state ? start.v : 0;
+    const double p = levels[static_cast<std::size_t>(i - process.noise.lowest())], v = start.v;
     if (p < least) continue;
     constexpr double most = 40;  // jumps that do not happen
     const double rate = model::change_rates(process.noise, i).most,
@@ -193,25 +189,10 @@ StartingPoint stationary_start(generator::Systems& systems, double speed,
 // On sliding states alone, those of `a`, which ends elements at `speed`.
 StartingPoint starting_point(generator::Systems& systems, double speed, const model::Start& start,
                              const KolmogorovOperator& a, const StickingPhases& sticking) {
-  using enum model::Start::Kind;
-  const auto& process = a.discretisation().process;
-  const int lowest = process.lowest_static(), highest = process.highest_static();
-  if (start.kind == stationary) return stationary_start(systems, speed, a);
-  if (start.p) {
-    const auto shares = model::levels_at(process.noise, start);
-    ByLevel resting = sticking.each(0);
-    for (int i = lowest; start.v == 0 && i <= highest; ++i) {
-      resting[i - lowest] = shares[i - process.noise.lowest()];
-    }
-    return {a.mean_at(shares, start.v), std::move(resting)};
-  }
-  if (start.kind == rest) {
-    return {a.mean_at(model::stationary_distribution(process.noise)), sticking.stationary()};
-  }
-  ByLevel at_rest = sticking.each(0);
-  const bool rests = start.v == 0 && lowest <= start.level && start.level <= highest;
-  if (rests) at_rest[start.level - lowest] = 1;
-  return {a.value_at(start.level, start.v), std::move(at_rest)};
+  if (start.kind == model::Start::Kind::stationary) return stationary_start(systems, speed, a);
+  const auto shares = model::levels_at(a.discretisation().process.noise, start);
+  return {a.mean_at(shares, start.v),
+          start.v == 0 ? sticking.static_part(shares) : sticking.each(0)};
 }
 
 // Where excursions start, by the states that a system of that symmetry keeps.
@@ -572,9 +553,9 @@ FirstPassage first_passage(generator::Systems& systems, const Starts& starts, do
   auto& system = systems.at(key);
   const generator::KolmogorovOperator& a = system.a();
   const StickingPhases sticking(process, starts.levels, process.symmetric());
-  const ByLevel at_rest = sticking.stationary();
-  const auto nu = occupations_from(system, starts.levels,
-                                   a.mean_at(model::stationary_distribution(process.noise)));
+  const auto noise = model::stationary_distribution(process.noise);
+  const ByLevel at_rest = sticking.static_part(noise);
+  const auto nu = occupations_from(system, starts.levels, a.mean_at(noise));
   const UntilPassage until(a, sticking, at_rest, nu, &linalg::Solution::x),
       roughly(a, sticking, at_rest, nu, &linalg::Solution::correction);
   const auto mean = [&starts](const std::vector<double>& by_start) {

@@ -1,3 +1,4 @@
+#include "stickslip/run/routes.hpp"
 
 #include <fmt/format.h>
 
@@ -17,7 +18,6 @@
 #include "stickslip/model/noise_chain.hpp"
 #include "stickslip/quantities/engines/excursions.hpp"
 #include "stickslip/quantities/plan.hpp"
-#include "stickslip/run/routes.hpp"
 
 namespace stickslip::run {
 namespace {

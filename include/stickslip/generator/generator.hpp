@@ -103,11 +103,9 @@ class KolmogorovOperator {
   /// there. Collective.
   [[nodiscard]] linalg::VecHandle trace_at_exit(Branch branch = Branch::positive) const;
 
-  /// The functional u -> u(x_i, v), v = 0 being s+- for |i| > k and rest for |i| <= k;
-  /// symmetry-reduced, from the branch that is kept. Static states must be kept. Collective.
-  [[nodiscard]] linalg::VecHandle value_at(int i, double v) const;
-  /// u -> sum_i p_i u(x_i, v), p by level from the lowest up, in the same sense. Collective.
-  /// O(levels).
+  /// The functional u -> sum_i p_i u(x_i, v), p by level from the lowest up, v = 0 being s+- for
+  /// |i| > k and rest for |i| <= k; symmetry-reduced, from the branch that is kept. Static states
+  /// must be kept. Collective. O(levels).
   [[nodiscard]] linalg::VecHandle mean_at(const std::vector<double>& p, double v = 0) const;
 
   /// nu -> -nu A_us, from the lowest static level up: the rate at which an occupation flows into

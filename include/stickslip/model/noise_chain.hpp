@@ -213,7 +213,6 @@ class LevelTable {
   [[nodiscard]] Place place_of(int i) const {
     return has_positions() ? Place{noise(i), position(i) - centre_, centre_} : Place(noise(i));
   }
-  [[nodiscard]] double centre() const { return centre_; }
   /// Of a body with a position, see Projection; nodes count from the lowest level. None where there
   /// is no such noise or position.
   [[nodiscard]] std::vector<Shown::Share> value_at(std::optional<double> noise, double p,

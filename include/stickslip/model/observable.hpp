@@ -40,8 +40,8 @@ struct Observable {
   using Function = std::function<double(const Place& x, double y, double v)>;
   std::string name;  ///< as given by the user
   Function value;
-  std::shared_ptr<const Expression> formula =
-      {};                            ///< of an expression, in x, y, v, stick, slide, p
+  /// Of an expression, in x, y, v, stick, slide and, on a spring, p.
+  std::shared_ptr<const Expression> formula = {};
   std::vector<double> numbers = {};  ///< that stand in an expression, mu_s and mu_d included
   bool quadratic = false;  ///< a polynomial in |v|, of degree 2 at most, which every element holds
   bool on_spring = false;  ///< an expression in which the position p is known

@@ -140,7 +140,7 @@ namespace {
 
 // Gaussian noises by name, of one term.
 
-// Reads the options of a term, the last of which damps it, and -noise_deviation if it is given.
+// Reads the options of a term, the last of which damps it, and the deviation if it is given.
 void make_named(Given& given, model::Scene& scene, std::initializer_list<const char*> own,
                 double deviation, model::CovarianceTerm (*term)(const model::Scene&)) {
   scene.noise.deviation = given.has(kDeviation) ? given.real(kDeviation) : deviation;

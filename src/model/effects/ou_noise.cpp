@@ -187,8 +187,7 @@ const Effect kOrnsteinUhlenbeck{
          {Option::real(
              kDelta, "force", "0.125", Range::not_negative(),
              "step between neighbouring noise levels; 0: none, the Gaussian noise of continuous "
-             "paths. "
-             "Unless given, half the deviation with -study tau",
+             "paths. Unless given, half the deviation with -study tau",
              "take for example 0.125, or 0",
              {.symbol = "\\delta", .label = "noise step", .others = {"dx", "step", "noise_step"}})},
          {Option::integer(kSteps, "", Range::whole(1, 1e6),

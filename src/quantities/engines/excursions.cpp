@@ -248,10 +248,9 @@ ByLevel StickingPhases::each(double value) const {
   return ByLevel(chain ? static_cast<std::size_t>(chain->size()) : 0, value);
 }
 
-ByLevel StickingPhases::stationary() const {
+ByLevel StickingPhases::static_part(const std::vector<double>& all) const {
   ByLevel p = each(0);
   if (!chain) return p;
-  const auto all = model::stationary_distribution(process.noise);
   std::copy_n(all.begin() + (process.lowest_static() - process.noise.lowest()), p.size(),
               p.begin());
   return p;

@@ -154,8 +154,8 @@ struct StickingPhases {
                  double lambda = 0);
 
   [[nodiscard]] ByLevel each(double value) const;
-  /// The part that the noise has on static levels in its stationary distribution.
-  [[nodiscard]] ByLevel stationary() const;
+  /// The static levels of numbers for all levels of the noise, from the lowest up.
+  [[nodiscard]] ByLevel static_part(const std::vector<double>& all) const;
   /// KolmogorovOperator::square_field() at rest.
   [[nodiscard]] ByLevel square_field(const ByLevel& at_rest, const ByLevel& at_starts) const;
 
