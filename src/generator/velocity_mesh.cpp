@@ -180,6 +180,14 @@ double weighted_tail(const model::Process& process, double tolerance, double til
   return fallen < drop ? std::max(reach, most) : v;
 }
 
+// By which elements are as long as log-density lets them. Noise of continuous paths turns bodies as
+// that at the peak of its spectrum does; that at zero frequency, of narrow bands far less, would
+// make elements as many times too short.
+double intensity_along(const model::Process& process) {
+  const auto& noise = process.noise;
+  return noise.continuous() ? noise.tail_intensity() : noise.intensity();
+}
+
 // Local decay rate of log-density in white noise of intensity D, (F(v) - b(v))/D, or of its growth.
 // A mean force g changes it by -g on one velocity branch and by g on the other; elements serve
 // both. With weights exp(s x(t)), |s| up to `tilt`, log of E[exp(s x(t))] rises with v by about s
@@ -190,7 +198,7 @@ double decay_rate(const model::Process& process, double v, double tilt = 0) {
   const double rest = std::max(process.friction.at_rest(), process.friction.mirrored().at_rest());
   const double slowing = std::abs(rest + drag) + std::abs(process.mean_force());
   constexpr double steeper = 4;
-  return std::max(slowing / process.noise.intensity(), steeper * tilt * v / slowing);
+  return std::max(slowing / intensity_along(process), steeper * tilt * v / slowing);
 }
 
 // Where geometric growth stops because an element would span more than `decay` of log-density.
@@ -340,7 +348,7 @@ std::vector<double> regular_ends(const model::Process& process, const MeshRule& 
     if (std::max(up, down) < nothing || std::min(up, down) > nothing) return both;
     const LogDensity& counts = up > down ? upper : lower;
     const double own = std::abs(counts.slope - counts.drag(v / rule.ratio()));
-    return std::min(both, own / process.noise.intensity());
+    return std::min(both, own / intensity_along(process));
   };
   const int layers = rule.layers > 0 ? rule.layers : natural_layers(process, rule);
   const double graded = graded_end(process, rule);

@@ -158,7 +158,7 @@ ForceMesh force_mesh(const std::vector<SpecialForce>& special, double reach, dou
     for (int e = 0; e < count && s.balance; ++e) {
       const double far = std::max(std::abs(mesh.ends[e] - s.z), std::abs(mesh.ends[e + 1] - s.z)),
                    enough = least + std::max(0.0, std::log(far / s.size) / std::log(rise));
-      mesh.degrees[e] = std::min(mesh.degrees[e], static_cast<int>(std::ceil(enough)));
+      mesh.degrees[e] = std::min(mesh.degrees[e], static_cast<int>(std::ceil(enough - 1e-9)));
     }
   }
   for (const auto& s : special) {

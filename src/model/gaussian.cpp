@@ -295,25 +295,51 @@ struct Layout {
   }
 };
 
-// How many modes it takes grows with how far the noise turns until it is damped. For d > 2 results
-// alternate about the limit with the degree, and are compared from one to the next. Where bodies
-// start at the force that balances friction, functions are like roots there, and elements shrink.
+// Modes across, and the order of the elements along the force that goes with them. Errors of modes
+// fall the more slowly the further the noise turns until it is damped, and elements that were finer
+// than that would take most of the time. Where bodies start close to the force that balances
+// friction, functions are steep between both, and elements count as much as modes.
+struct Counts {
+  int across;
+  double along;
+
+  Counts(const Dense& a, int order, double gap) : across(order), along(order) {
+    const int factors = a.rows() - 1;
+    if (factors == 0) {
+      across = 1;
+      return;
+    }
+    constexpr double wide = 0.7;  // [deviation]
+    double share = 0.5;           // of what one order brings without modes
+    if (factors == 1) {
+      const int first = 2 + (turns(a) > kOften ? 2 : 0) + (turns(a) > 8 ? 2 : 0);
+      across = std::max(1, first + 2 * (order - 3));
+      share = std::clamp(1.8 / turns(a), 0.2, 1.0);
+    }
+    const double steep = std::max(0.0, std::log2(wide / gap));
+    along = std::max(2.0, std::min<double>(order, 2 + share * (order - 3) + steep));
+  }
+};
+
+// For d > 2 results alternate about the limit with the degree, and are compared from one to the
+// next. Where bodies start at the force that balances friction, functions are like roots, and
+// elements shrink.
 Layout layout_of(const Dense& a, double deviation, const Thresholds& thresholds, int order) {
-  const int factors = a.rows() - 1;
-  const int first = 2 + (turns(a) > kOften ? 2 : 0) + (turns(a) > 8 ? 2 : 0),
-            across = factors == 1 ? std::max(1, first + 2 * (order - 3)) : order,
-            along = factors == 0 ? std::min(order, 6 + std::max(0, order - 6) / 2)
-                                 : 3 + (order - 2) / 2;
   double gap = kInfinity;
   for (int side : {0, 1}) {
     const double apart = std::abs(thresholds.start[side] - thresholds.balance[side]) / deviation;
     gap = std::min(gap, apart > kApart ? apart : 0);
   }
+  const Counts counts(a, order, gap);
+  const bool one = a.rows() == 1;
+  const int degree = one ? std::min(order, 6 + std::max(0, order - 6) / 2)
+                         : static_cast<int>(2 + counts.along / 2),
+            at_rest = std::max(static_cast<int>(std::lround(counts.along)) + (one ? 0 : 1), degree);
   // Beside a start of its own nothing steep stands; at one that is a balance point functions are
   // like roots, and down to where both are told apart.
   constexpr double least = 1e-4, at_starts = 0.3;
-  const double apart = std::min(0.45 * std::pow(2, 3 - order), gap / 4),
-               together = 0.1 * std::pow(4, 3 - order);
+  const double apart = std::min(0.45 * std::pow(2, 3 - counts.along), gap / counts.along),
+               together = 0.1 * std::pow(4, 3 - counts.along);
   Layout made{{}, {}, std::max({apart, together, least}), {}};
   // Beyond 5, 6 and 7 deviations lie 1e-5, 1e-7 and 1e-10 of E[X^2].
   const double reach = std::min(7.0, 3.5 + order / 2.0);
@@ -322,9 +348,9 @@ Layout layout_of(const Dense& a, double deviation, const Thresholds& thresholds,
     const double start = force / deviation;
     if (std::abs(start) < reach) made.cuts.push_back(start);
   }
-  constexpr double longest = 3;
-  made.mesh = force_mesh(special, reach, longest, along, std::max(order, along));
-  made.modes = modes_below(factors, across);
+  constexpr double longest = 5;
+  made.mesh = force_mesh(special, reach, longest, degree, at_rest);
+  made.modes = modes_below(a.rows() - 1, counts.across);
   return made;
 }
 
