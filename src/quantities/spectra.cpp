@@ -10,6 +10,7 @@
 #include <complex>
 #include <limits>
 #include <numbers>
+#include <numeric>
 
 #include "stickslip/case/spectrum_rows.hpp"
 #include "stickslip/case/sticking_rows.hpp"
@@ -238,10 +239,11 @@ class Sector {
   }
 
   /// w(f), for an f of this symmetry, by start.
-  [[nodiscard]] std::vector<Uncertain> integral(const Function& f, bool quadratic) const {
-    const auto rest = static_integral(f);
+  [[nodiscard]] std::vector<Uncertain> integral(const Function& f, bool quadratic,
+                                                bool averaged = false) const {
+    const auto rest = static_integral(f, averaged);
     const auto& a = system_.a();
-    const linalg::VecHandle sliding = a.values(f);
+    const linalg::VecHandle sliding = a.values(f, averaged);
     linalg::VecHandle overlooked = quadratic ? a.zeros() : a.overlooked(f);
     constexpr double rounding = 1e-12;
     const double size = std::max<double>(linalg::norm(sliding, NORM_INFINITY), largest_size(rest));
@@ -258,13 +260,13 @@ class Sector {
  private:
   // int exp(-lambda s) f(X_s, 0, 0) ds over a sticking phase, by its first level from the lowest
   // up.
-  [[nodiscard]] std::vector<double> static_integral(const Function& f) const {
-    const int highest = process_.highest_static();
+  [[nodiscard]] std::vector<double> static_integral(const Function& f, bool averaged) const {
+    const int lowest = process_.noise.lowest(), highest = process_.highest_static();
     const bool odd = symmetry_ == Symmetry::odd;
-    std::vector<double> values;
-    for (int i = odd ? 1 : process_.lowest_static(); i <= highest; ++i) {
-      values.push_back(f(process_.noise.level(i), 0, 0));
-    }
+    const auto all =
+        process_.noise.values([&f](const model::Place& x) { return f(x, 0, 0); }, averaged);
+    std::vector<double> values(all.begin() + ((odd ? 1 : process_.lowest_static()) - lowest),
+                               all.begin() + (highest + 1 - lowest));
     if (!odd) return StaticChain::of(process_, lambda_).integral(std::move(values));
     return spread_odd(
         StaticChain::odd(process_.noise, highest, lambda_).integral(std::move(values)));
@@ -312,18 +314,40 @@ Resolvent by_parity(generator::Systems& systems, double lambda,
   return r;
 }
 
+// The weights of starts in what stands for all on a side: one level, or all by their shares where
+// these are given.
+std::vector<double> weights_of_side(const model::Process& process, const std::vector<int>& levels,
+                                    const std::vector<double>& shares, bool up) {
+  const int level = process.exit_level(up), highest = process.highest_static();
+  std::vector<double> weights;
+  for (std::size_t t = 0; t < levels.size(); ++t) {
+    const bool alike = (levels[t] > highest) == (level > highest);
+    weights.push_back(shares.empty() ? (levels[t] == level ? 1 : 0) : (alike ? shares[t] : 0));
+  }
+  const double all = std::accumulate(weights.begin(), weights.end(), 0.0);
+  for (double& weight : weights) weight /= all;
+  return weights;
+}
+
+Uncertain mean(const std::vector<double>& weights, const std::vector<Uncertain>& values) {
+  Uncertain sum;
+  for (std::size_t t = 0; t < weights.size(); ++t) {
+    if (weights[t] != 0) sum = sum + weights[t] * values[t];
+  }
+  return sum;
+}
+
 // From all starts, one after the other.
 Resolvent by_start(generator::Systems& systems, double lambda,
-                   const std::vector<model::Observable>& observables) {
+                   const std::vector<model::Observable>& observables,
+                   const std::vector<double>& shares) {
   const auto& process = systems.process();
   const auto levels = process.starts();
-  const auto place_of = [&](int level) {
-    return static_cast<std::size_t>(std::ranges::find(levels, level) - levels.begin());
-  };
   const Sector all(systems, lambda, Symmetry::none, levels);
   const auto chain = StaticChain::of(process, lambda);
-  const std::size_t count = levels.size(), plus = place_of(process.exit_level(true)),
-                    minus = place_of(process.exit_level(false));
+  const std::size_t count = levels.size();
+  const auto plus = weights_of_side(process, levels, shares, true),
+             minus = weights_of_side(process, levels, shares, false);
   std::vector<std::vector<Uncertain>> h(count);
   for (int level : levels) {
     const auto exit = chain.exit_transform_to(level);
@@ -331,14 +355,19 @@ Resolvent by_start(generator::Systems& systems, double lambda,
   }
   const auto w_one = all.integral(one(), true);
   const auto up = chain.upward_exit_transform(), down = chain.downward_exit_transform();
-  const auto from = [&](std::size_t t) {
-    return ExitTransforms{all.exit_transform(t, up), all.exit_transform(t, down), w_one[t]};
+  std::vector<Uncertain> h_up, h_down;
+  for (std::size_t t = 0; t < count; ++t) {
+    h_up.push_back(all.exit_transform(t, up));
+    h_down.push_back(all.exit_transform(t, down));
+  }
+  const auto from = [&](const std::vector<double>& side) {
+    return ExitTransforms{mean(side, h_up), mean(side, h_down), mean(side, w_one)};
   };
   Resolvent r{from(plus), from(minus), {}};
-  const DiscountedStarts starts(lambda, w_one, h);
+  const DiscountedStarts starts(lambda, w_one, h, shares.empty());
   for (const auto& f : observables) {
     const auto part = [&](Symmetry parity) {
-      return all.integral(generator::part_of(f, parity), f.quadratic);
+      return all.integral(generator::part_of(f, parity), f.quadratic, f.formula != nullptr);
     };
     const auto w = part(Symmetry::none);
     Uncertain pi = starts.mean(w);
@@ -348,7 +377,7 @@ Resolvent by_start(generator::Systems& systems, double lambda,
       pi = starts.mean(part(Symmetry::even));
       if (count == 2) mu = starts.apart(part(Symmetry::odd));
     }
-    r.of.push_back({w[plus], w[minus], pi, mu[plus], mu[minus], {}, {}});
+    r.of.push_back({mean(plus, w), mean(minus, w), pi, mean(plus, mu), mean(minus, mu), {}, {}});
   }
   systems.release({lambda, Symmetry::none});
   return r;
@@ -482,9 +511,10 @@ void noise_spectrum_tasks(Planner& planner) {
 }
 
 Resolvent resolvent(generator::Systems& systems, double lambda,
-                    const std::vector<model::Observable>& observables) {
-  Resolvent r =
-      (systems.process().symmetric() ? by_parity : by_start)(systems, lambda, observables);
+                    const std::vector<model::Observable>& observables,
+                    const std::vector<double>& shares) {
+  Resolvent r = systems.process().symmetric() ? by_parity(systems, lambda, observables)
+                                              : by_start(systems, lambda, observables, shares);
   for (auto& t : r.of) {
     if (lambda == 0) continue;
     t.u = (1 / lambda) * t.pi_lambda + t.mu_lambda;
@@ -533,6 +563,8 @@ void append_resolvent(const std::vector<double>& lambda,
 }
 
 void resolvent_tasks(Planner& planner) {
+  const bool of_nodes = !planner.given().scene.meant().noise.has_levels();
+  if (of_nodes) planner.need_distribution();
   const auto found = planner.collect<Resolvent>(
       [](const Computation& computation, const auto& all) {
         const auto& question = computation.question();
@@ -545,7 +577,9 @@ void resolvent_tasks(Planner& planner) {
     task.uses = {{{lambda, Symmetry::even}, 0, 1}, {{lambda, Symmetry::odd}, 0, 1}};
     if (!planner.symmetric()) task.uses = {{{lambda, Symmetry::none}, 0, planner.starts()}};
     task.carry_out = [=](Computation& computation) {
-      found->push_back(resolvent(computation.systems, lambda, computation.question().observables));
+      found->push_back(
+          resolvent(computation.systems, lambda, computation.question().observables,
+                    of_nodes ? computation.distribution().starts().shares : std::vector<double>{}));
     };
     return task;
   });

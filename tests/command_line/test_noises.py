@@ -140,6 +140,29 @@ class Noises(Case):
             self.assertLess(abs(found["value"][0] - right), found["error"][0] + error, key)
             self.assertLess(found["error"][0], 1e-3, key)
 
+    # u(f) and h- of -noise ou by -delta 1/40, 1/20 and 1/10, extrapolated twice; w+, h- and u of the band by 120 000
+    # simulated excursions, within 0.5 %.
+    RESOLVENTS = (
+        (("-noise", "ou", "-delta", "0", "-mu_d", "0.5", "-bias", "0.2"), "1e-3", 3e-4,
+         {"u(v^2)": 0.267943, "h_minus": 0.224592, "mu(v)": 0.159407, "u_minus(stick)": 0.452669}),
+        (BAND, "0.1", 0.01, {"u(v^2)": 0.4602, "h_minus": 0.1903, "w_one": 1.512, "u(stick)": 0.2138}))
+
+    def test_the_resolvent_of_gaussian_noise(self):
+        for case, accuracy, share, right in self.RESOLVENTS:
+            found = self.summary(*case, "-accuracy", accuracy, "-quantities", "sticking,averages,resolvent",
+                                 "-observable", "v^2;v;stick", "-lambda", "1e-7,0.5")["results"]
+            for key, value in right.items():
+                self.assertLess(abs(found[key]["value"][1] - value), found[key]["error"][1] + share * value, key)
+            for f in ("v^2", "stick"):
+                mean, limit = found[f"pi({f})"], found[f"pi_lambda({f})"]
+                self.assertLess(abs(limit["value"][0] - mean["value"]), limit["error"][0] + mean["error"], f)
+            if case is self.BAND:
+                self.assert_close(found["w_one"]["value"][0], found["mean_excursion"]["value"], 1e-6)
+            ends = (found[key]["value"][1] for key in ("h_plus", "h_minus"))
+            self.assert_close(sum(ends) + 0.5 * found["w_one"]["value"][1], 1, 1e-9)
+        asks = ("-observable", "v", "-lambda", "1", "-quantities", "resolvent")
+        self.refuse(*self.BAND, *asks, "-route", "monte_carlo", message=("asks for resolvent", "simulated for noises"))
+
     def test_gaussian_noises_by_name(self):
         ground = self.summary(*self.GROUND, "-accuracy", "1e-3")
         for key, value in {"P_stick": 0.057558, "mean_slide": 0.330008, "E_V2": 0.0337518, "E_XV": 0.1310128}.items():

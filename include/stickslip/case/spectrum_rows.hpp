@@ -274,8 +274,7 @@ inline constexpr Entry kResolvent{
     .routes = {Route::excursion, Route::monte_carlo},
     .options = "lambda, observable",
     .rows = kResolventRows,
-    .of_phases = true,
-    .of_levels = true};
+    .of_phases = true};
 
 // The quantity relaxation: leading eigenvalues of the generator, by SLEPc.
 

@@ -78,7 +78,8 @@ struct ObservableTransforms {
 };
 
 struct Resolvent {
-  ExitTransforms from_plus, from_minus;  ///< of excursions from s+ and s-, the most frequent ones
+  /// Of excursions from s+ and s-, the most frequent ones; of nodes their means.
+  ExitTransforms from_plus, from_minus;
   std::vector<ObservableTransforms> of;  ///< one for each observable
 };
 
@@ -99,9 +100,11 @@ struct Resolvent {
 /// where p w(1) mu = 0 takes the place of the equation at one of the starts, so that lambda = 0 is
 /// no special case. Differences of w and of mu are taken pair by pair, with positive weights; all
 /// else is without subtraction. h_plus and h_minus are sums over the starts on their side.
+/// With `shares` of starts, as those that are nodes have, s+ and s- stand for all on their side.
 /// O(starts^3). Collective. lambda >= 0 [1/time].
 [[nodiscard]] Resolvent resolvent(generator::Systems& systems, double lambda,
-                                  const std::vector<model::Observable>& observables);
+                                  const std::vector<model::Observable>& observables,
+                                  const std::vector<double>& shares = {});
 
 /// h_plus, h_minus, w_one and, for each observable f, w_plus(f), w_minus(f), pi(f), mu(f) and,
 /// where no lambda is 0, u(f): arrays over lambda. Without symmetry also h_plus_from_minus,

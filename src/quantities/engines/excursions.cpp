@@ -61,7 +61,7 @@ double sum_of_products(const ByLevel& a, const ByLevel& b) {
 
 // Far below what follows one another at all; where discounts leave nothing but rounding, shares
 // have its error.
-std::vector<std::vector<Uncertain>> positive(std::vector<std::vector<Uncertain>> h) {
+std::vector<std::vector<Uncertain>> at_least_none(std::vector<std::vector<Uncertain>> h) {
   constexpr double least = 1e-30;
   for (auto& row : h) {
     for (auto& step : row) {
@@ -341,10 +341,10 @@ UntilPassage::Integral UntilPassage::renewed(Integral sum, std::vector<double> k
 }
 
 DiscountedStarts::DiscountedStarts(double lambda, std::vector<Uncertain> w,
-                                   std::vector<std::vector<Uncertain>> h)
+                                   std::vector<std::vector<Uncertain>> h, bool positive)
     : lambda_(lambda),
       w_(std::move(w)),
-      h_(positive(std::move(h))),
+      h_(positive ? at_least_none(std::move(h)) : std::move(h)),
       base_(most_reached(h_)),
       others_(all_but(base_, w_.size())),
       until_base_(steps(lambda)) {

@@ -228,8 +228,9 @@ class UntilPassage {
 /// eliminations. Local. O(starts^3).
 class DiscountedStarts {
  public:
-  /// h by rows; lambda >= 0 [1/time].
-  DiscountedStarts(double lambda, std::vector<Uncertain> w, std::vector<std::vector<Uncertain>> h);
+  /// h by rows, `positive` where it is rounding alone that makes it less; lambda >= 0 [1/time].
+  DiscountedStarts(double lambda, std::vector<Uncertain> w, std::vector<std::vector<Uncertain>> h,
+                   bool positive = true);
 
   /// p f/p w, where p are the stationary shares of the chain that goes from t to u at the rate
   /// h_tu.
