@@ -181,6 +181,9 @@ class Rules {
            fmt::format("takes more than {} pairs of a force and a position",
                        model::Spring::kMostPairs),
            "take fewer levels, less friction, or -route monte_carlo");
+    report("quantities", q_.wants(Quantity::sensitivity) && !method_.simulates,
+           "asks for sensitivity, and derivatives are not found for a body on a spring",
+           "leave that out, or leave -spring_stiffness out");
     const auto travels = wanted([](const auto& entry) { return entry.of_travel; });
     report("quantities", !travels.empty(),
            fmt::format("asks for {}, and a spring keeps the body in one place: its displacement "

@@ -119,6 +119,11 @@ class RowAssembler {
   void for_each_jump(Branch branch, int n, Visit visit) const {
     if (!derivative_) {
       for (const auto& [to, rate] : side(branch).noise.jumps(n)) visit(to, rate);
+    } else if (derivative_->nodes) {
+      const int sign = branch == Branch::positive ? 1 : -1;
+      for (const auto& [to, rate] : derivative_->nodes->rates[place_of_level(sign * n)]) {
+        visit(sign * (chain_.lowest() + to), rate);
+      }
     } else if (derivative_->is_of_jumps()) {
       if (changes_of_ != n) {
         changes_ = noise_.jumps_by_tau(n);
@@ -143,7 +148,8 @@ class RowAssembler {
     const Side& here = side(s.branch);
     const double net_force = here.process.net_force_at(here.noise.x(s.noise));
     if (derivative_) {
-      here.velocities.transport_change(net_force, speed_change(s.branch), s.node, transport_);
+      here.velocities.transport_change(net_force, speed_change(s.branch, s.noise), s.node,
+                                       transport_);
     } else {
       here.velocities.transport(net_force, s.node, transport_);
     }
@@ -158,8 +164,9 @@ class RowAssembler {
   void rates_of_origin(const State& s) {
     const Side& here = side(s.branch);
     const double net_force = here.process.net_force_at(here.noise.x(s.noise));
-    rate_to(node(s.branch, s.noise, 0),
-            here.velocities.origin_rate(derivative_ ? speed_change(s.branch)(0) : net_force));
+    rate_to(
+        node(s.branch, s.noise, 0),
+        here.velocities.origin_rate(derivative_ ? speed_change(s.branch, s.noise)(0) : net_force));
     for_each_jump(s.branch, s.noise, [&](int to, double rate) {
       rate_to_zero({StateKind::node, s.branch, to, 0}, rate);
     });
@@ -288,14 +295,21 @@ class RowAssembler {
     return states_.index({StateKind::holding, branch, n, 0});
   }
   [[nodiscard]] double reflection() const { return states_.symmetry() == Symmetry::odd ? -1 : 1; }
-  [[nodiscard]] SpeedChange speed_change(Branch branch) const {
+  [[nodiscard]] std::size_t place_of_level(int level) const {
+    const int place = level - chain_.lowest();
+    return static_cast<std::size_t>(place);
+  }
+  [[nodiscard]] SpeedChange speed_change(Branch branch, int n) const {
     if (derivative_->is_of_jumps()) return [](double) { return 0.0; };
     const auto& given = upper_.process.friction;
     const bool lower = branch == Branch::negative;
-    return [change = derivative_->acceleration,
+    const int sign = lower ? -1 : 1;
+    const double moved =
+        derivative_->nodes ? sign * derivative_->nodes->x[place_of_level(sign * n)] : 0;
+    return [moved, change = derivative_->acceleration,
             here = model::BranchFriction{side(branch).process.friction, lower && given.mu_s_minus,
                                          lower && given.mu_d_minus}](double v) {
-      return change(here, v);
+      return change(here, v) + moved;
     };
   }
 

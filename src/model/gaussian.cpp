@@ -10,6 +10,7 @@
 #include <numeric>
 
 #include "force_elements.hpp"
+#include "moved_nodes.hpp"
 #include "stickslip/base/text.hpp"
 
 namespace stickslip::model {
@@ -354,6 +355,59 @@ Layout layout_of(const Dense& a, double deviation, const Thresholds& thresholds,
   return made;
 }
 
+// The generator on the nodes of a layout.
+Projection projection_on(const Layout& grid, const GaussianNoise& noise, double peak,
+                         const Thresholds& thresholds) {
+  const auto kept = std::make_shared<const AlongForce>(grid.mesh, grid.cuts, normal_weight);
+  const AlongForce& x = *kept;
+  const Across y(noise.matrix(), grid.modes);
+  Projection made;
+  made.deviation = noise.deviation();
+  made.intensity = noise.power_spectral_density(0) / 2;
+  made.peak_intensity = peak / 2;
+  made.step = grid.finest * noise.deviation();
+  made.rate = 2 * noise.matrix()(0, 0) / (grid.finest * grid.finest);
+  made.even = thresholds.alike_both_ways();
+  made.reversed = made.even && noise.matrix().rows() <= 2;
+  const auto force = x.forces(noise.deviation(), thresholds.start[1], thresholds.start[0]);
+  const double total = std::accumulate(x.w.begin(), x.w.end(), 0.0);
+  for (std::size_t k = 0; k < x.w.size(); ++k) {
+    for (double weight : y.weight) {
+      made.x.push_back(force[k]);
+      made.probability.push_back(x.w[k] / total * weight);
+    }
+  }
+  made.means = [kept, across = y.weight.size(),
+                scale = noise.deviation()](const FunctionOfNoise& f) {
+    std::vector<double> all;
+    for (double mean : kept->means([&](double z) { return f(scale * z); })) {
+      all.insert(all.end(), across, mean);
+    }
+    return all;
+  };
+  made.shown = shown_by(x, static_cast<int>(y.weight.size()), noise.deviation());
+  const Dense rates = rates_of(noise.matrix()(0, 0), x, y);
+  const int count = rates.rows();
+  for (int r = 0; r < count; ++r) {
+    for (int c = 0; c < count; ++c) {
+      // The mirror image has the same but for rounding.
+      const double rate =
+          made.reversed ? (rates(r, c) + rates(count - 1 - r, count - 1 - c)) / 2 : rates(r, c);
+      if (r == c || rate == 0) continue;
+      made.transitions.push_back({static_cast<std::size_t>(r), static_cast<std::size_t>(c), rate});
+    }
+  }
+  return made;
+}
+
+// A place among marks, moved in proportion between those beside it.
+double moved(double z, const std::vector<std::pair<double, double>>& marks) {
+  const auto above = std::ranges::lower_bound(marks, z, {}, &std::pair<double, double>::first);
+  if (above->first == z) return above->second;
+  const auto& [low, to_low] = above[-1];
+  return to_low + (z - low) / (above->first - low) * (above->second - to_low);
+}
+
 }  // namespace
 
 bool GaussianNoise::fits(const Thresholds& thresholds, int order) const {
@@ -366,45 +420,27 @@ Projection GaussianNoise::projection(const Thresholds& thresholds, int order) co
     throw UnfitTable(terms_.size(), fmt::format("the terms take {} nodes, and at most {} are taken",
                                                 grid.nodes(), kMostNodes));
   }
-  const auto kept = std::make_shared<const AlongForce>(grid.mesh, grid.cuts, normal_weight);
-  const AlongForce& x = *kept;
-  const Across y(a_, grid.modes);
-  Projection made;
-  made.deviation = deviation_;
-  made.intensity = power_spectral_density(0) / 2;
-  made.peak_intensity = peak_ / 2;
-  made.step = grid.finest * deviation_;
-  made.rate = 2 * a_(0, 0) / (grid.finest * grid.finest);
-  made.even = thresholds.alike_both_ways();
-  made.reversed = made.even && a_.rows() <= 2;
-  const auto force = x.forces(deviation_, thresholds.start[1], thresholds.start[0]);
-  const double total = std::accumulate(x.w.begin(), x.w.end(), 0.0);
-  for (std::size_t k = 0; k < x.w.size(); ++k) {
-    for (double weight : y.weight) {
-      made.x.push_back(force[k]);
-      made.probability.push_back(x.w[k] / total * weight);
+  return projection_on(grid, *this, peak_, thresholds);
+}
+
+std::shared_ptr<const LevelTable> moved_nodes(const Thresholded& from, const Thresholded& to,
+                                              int order) {
+  const double scale = from.noise.deviation(), other = to.noise.deviation();
+  Layout grid = layout_of(from.noise.matrix(), scale, from.thresholds, order);
+  const double reach = grid.mesh.ends.back();
+  std::vector<std::pair<double, double>> marks{{-reach, -reach}, {reach, reach}};
+  for (const auto of : {&Thresholds::start, &Thresholds::balance}) {
+    for (const int side : {0, 1}) {
+      const double z = (from.thresholds.*of)[side] / scale;
+      if (std::abs(z) < reach) marks.emplace_back(z, (to.thresholds.*of)[side] / other);
     }
   }
-  made.means = [kept, across = y.weight.size(), scale = deviation_](const FunctionOfNoise& f) {
-    std::vector<double> all;
-    for (double mean : kept->means([&](double z) { return f(scale * z); })) {
-      all.insert(all.end(), across, mean);
-    }
-    return all;
-  };
-  made.shown = shown_by(x, static_cast<int>(y.weight.size()), deviation_);
-  const Dense rates = rates_of(a_(0, 0), x, y);
-  const int count = rates.rows();
-  for (int r = 0; r < count; ++r) {
-    for (int c = 0; c < count; ++c) {
-      // The mirror image has the same but for rounding.
-      const double rate =
-          made.reversed ? (rates(r, c) + rates(count - 1 - r, count - 1 - c)) / 2 : rates(r, c);
-      if (r == c || rate == 0) continue;
-      made.transitions.push_back({static_cast<std::size_t>(r), static_cast<std::size_t>(c), rate});
-    }
+  std::ranges::sort(marks);
+  for (auto* places : {&grid.mesh.ends, &grid.cuts}) {
+    for (double& z : *places) z = moved(z, marks);
   }
-  return made;
+  return std::make_shared<const LevelTable>(LevelTable::of(
+      projection_on(grid, to.noise, to.noise.power_spectral_density(0), to.thresholds)));
 }
 
 }  // namespace stickslip::model

@@ -113,12 +113,16 @@ class Sensitivity {
     const auto mean = [this](const KolmogorovOperator::Observable& f) {
       return linalg::dot(distribution_.occupation(), system_.a().values(f));
     };
-    const auto add = [&](const Row& row, const KolmogorovOperator::Observable& f) {
-      append(row, ratio(mean(f), sliding_mean(f)), results);
+    const auto add = [&](const Row& row, const KolmogorovOperator::Observable& f,
+                         const Gradient& of_f = {}) {
+      Gradient gradient = sliding_mean(f);
+      for (std::size_t n = 0; n < of_f.size(); ++n) gradient[n] = gradient[n] + of_f[n];
+      append(row, ratio(mean(f), gradient), results);
     };
     add(cases::kEV2, [](double, double, double v) { return v * v; });
     add(cases::kEAbsV, [](double, double, double v) { return std::abs(v); });
-    add(cases::kEXV, [](double x, double, double v) { return x * v; });
+    add(
+        cases::kEXV, [](double x, double, double v) { return x * v; }, moved_forces());
     if (distribution_.process().drifts()) {
       add(cases::kEV, [](double, double, double v) { return v; });
     }
@@ -166,16 +170,58 @@ class Sensitivity {
     }
     const std::vector<Uncertain> ones(count, {1, 0});
     std::vector<double> worth;
-    for (const auto& z : DiscountedStarts(0, ones, next).apart(means)) worth.push_back(z.value);
+    const bool positive = distribution_.process().noise.has_levels();
+    for (const auto& z : DiscountedStarts(0, ones, next, positive).apart(means)) {
+      worth.push_back(z.value);
+    }
     return worth;
+  }
+
+  // By parameter what an excursion gathers of |v| times the change of the force on its nodes.
+  [[nodiscard]] Gradient moved_forces() const {
+    const auto& distance = distribution_.excursion().slide_distance;
+    Gradient sums;
+    for (const auto& theta : parameters_) {
+      double sum = 0;
+      const std::size_t count = theta.nodes ? theta.nodes->x.size() : 0;
+      for (std::size_t n = 0; n < count; ++n) {
+        sum += theta.nodes->x[n] * (distance[n] - distance[2 * count - 1 - n]);
+      }
+      sums.push_back({sum, 0});
+    }
+    return sums;
+  }
+
+  // What changes of rates between nodes at rest add to a mean of values at rest, and at starts.
+  [[nodiscard]] double static_phase_by(const model::NodeChange& change,
+                                       const std::vector<PetscScalar>& at_rest,
+                                       const std::vector<double>& at_starts) const {
+    const auto& process = distribution_.process();
+    const auto& starts = distribution_.starts().levels;
+    const int lowest = process.lowest_static(), first = process.noise.lowest();
+    const auto value = [&](int level) {
+      if (process.sticks(level)) return PetscRealPart(at_rest[level - lowest]);
+      const auto start = std::ranges::find(starts, level);
+      return start == starts.end() || at_starts.empty() ? 0.0 : at_starts[start - starts.begin()];
+    };
+    const auto& stick_time = distribution_.excursion().stick_time;
+    double sum = 0;
+    for (std::size_t n = 0; n < stick_time.size(); ++n) {
+      const int level = lowest + static_cast<int>(n);
+      for (const auto& [to, rate] : change.rates[level - first]) {
+        sum += stick_time[n] * rate * (value(first + to) - value(level));
+      }
+    }
+    return sum;
   }
 
   // nu dL (h, s) by parameter, and what the starts change.
   [[nodiscard]] Gradient through(linalg::Solution h, const std::vector<double>& s) const {
     std::vector<PetscScalar> values(s.begin(), s.end());
+    std::vector<double> worth;
     double upper_side = 0;
     if (exits_.size() > 1) {
-      const auto worth = worth_of_starts(h);
+      worth = worth_of_starts(h);
       upper_side = worth.back() - worth.front();
       std::vector<PetscScalar> next(s.size(), 0.0);
       for (std::size_t t = 0; t < worth.size(); ++t) {
@@ -195,8 +241,10 @@ class Sensitivity {
         return -linalg::dot(distribution_.occupation(), image);
       };
       const double moved = linalg::dot(distribution_.occupation(), change.from_static(values));
+      const auto& theta = parameters_[n];
       const double chain =
-          !parameters_[n].is_of_jumps()
+          theta.nodes ? static_phase_by(*theta.nodes, values, worth)
+          : !theta.is_of_jumps()
               ? 0
               : upper_side * static_phase_by_tau(distribution_.process(),
                                                  distribution_.excursion().stick_time)
@@ -302,8 +350,13 @@ void sensitivity_tasks(Planner& planner) {
             adjoints = means * (planner.starts() > 1 ? 2 : 1);
   const auto parameters = effects::derivatives_of(scene);
   const auto find = [=](Computation& computation) {
-    append_sensitivity(computation.systems, computation.distribution(), parameters, sticking,
-                       moments, computation.results());
+    auto by = parameters;
+    for (auto& theta : by) {
+      theta.nodes = effects::change_of_nodes(computation.problem.given.scene, theta,
+                                             computation.process().noise.levels);
+    }
+    append_sensitivity(computation.systems, computation.distribution(), by, sticking, moments,
+                       computation.results());
     set_scales(computation.problem.given.scene, parameters, computation.results());
   };
   planner.add({"sensitivity",

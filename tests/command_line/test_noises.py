@@ -163,6 +163,31 @@ class Noises(Case):
         asks = ("-observable", "v", "-lambda", "1", "-quantities", "resolvent")
         self.refuse(*self.BAND, *asks, "-route", "monte_carlo", message=("asks for resolvent", "simulated for noises"))
 
+    def test_sensitivities_of_gaussian_noise(self):
+        ou = ("-noise", "ou", "-delta", "0")
+        # By differences of runs 1 and 2 % apart, of accuracy 1e-7, extrapolated.
+        at = {"tau": 1, "noise_deviation": 1.1, "mu_s": 1, "mu_d": 0.5, "drag_coefficient": 0.8}
+        right = {"dP_stick_dtau": 0.06155476, "dmean_stick_dtau": 0.4054473, "dE_XV_dnoise_deviation": 1.0624718,
+                 "dmean_slide_dmu_s": 1.314672, "dmean_stick_dmu_d": 0.208903, "dE_V2_ddrag_coefficient": -0.5577778}
+        stated = [word for name, value in at.items() for word in (f"-{name}", str(value))]
+        found = self.summary(*ou, *stated, "-quantities", "sticking,moments,sensitivity", "-accuracy", "1e-4")["results"]
+        for key, value in right.items():
+            self.assertLess(abs(found[key]["value"] - value), found[key]["error"] + 2e-6 * abs(value), key)
+            self.assertLess(found[key]["error"], 1e-3 * abs(value), key)
+        # By units: no share of the time changes if all forces grow, nor if all times do.
+        ground = {"ground_frequency": 15.6, "ground_damping": 0.6, "noise_deviation": 2, "mu_s": 1.5, "mu_d": 0.75,
+                  "drag_coefficient": 1}
+        cases = ((found, at, {"tau": 1, "drag_coefficient": -1}),
+                 (self.summary(*self.GROUND, "-quantities", "sticking,sensitivity", "-degree", "3", status=3)["results"],
+                  ground, {"ground_frequency": 1, "drag_coefficient": 1}))
+        for results, values, times in cases:
+            for powers in (dict.fromkeys(("noise_deviation", "mu_s", "mu_d"), 1), times):
+                parts = [power * values[name] * results[f"dP_stick_d{name}"]["value"] for name, power in powers.items()]
+                self.assertLess(abs(sum(parts)), 2e-3 * max(map(abs, parts)), powers)
+        self.assertIn("dP_stick_dground_damping", cases[1][0])
+        self.refuse("-noise", "ou", "-spring_stiffness", "1", "-mu_d", "0.5", "-quantities", "sticking,sensitivity",
+                    message=("derivatives are not found for a body on a spring", "leave -spring_stiffness out"))
+
     def test_gaussian_noises_by_name(self):
         ground = self.summary(*self.GROUND, "-accuracy", "1e-3")
         for key, value in {"P_stick": 0.057558, "mean_slide": 0.330008, "E_V2": 0.0337518, "E_XV": 0.1310128}.items():

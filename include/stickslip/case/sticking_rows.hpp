@@ -272,12 +272,24 @@ inline constexpr Row kDerivative{
                   "for, such as dP_stick_dtau",
     .unit = "[A]/[p]",
     .convention = "p: mu_d, mu_d_minus if given, tau at fixed N, drag_coefficient, with -friction "
-                  "stribeck also mu_s and stribeck_velocity; the static levels are held fixed",
+                  "stribeck also mu_s and stribeck_velocity; the static levels are held fixed. "
+                  "Under noise of continuous paths also mu_s and the numbers of the noise",
     .kind = Kind::derivative};
 
 /// The parameters p of these keys.
-inline constexpr std::string_view kDifferentiatedBy[] = {
-    "mu_d", "mu_d_minus", "mu_s", "stribeck_velocity", "tau", "drag_coefficient"};
+inline constexpr std::string_view kDifferentiatedBy[] = {"mu_d",
+                                                         "mu_d_minus",
+                                                         "mu_s",
+                                                         "mu_s_minus",
+                                                         "stribeck_velocity",
+                                                         "tau",
+                                                         "drag_coefficient",
+                                                         "noise_deviation",
+                                                         "band_frequency",
+                                                         "band_width",
+                                                         "ground_frequency",
+                                                         "ground_damping",
+                                                         "ground_intensity"};
 
 inline constexpr const Row* kSensitivityRows[] = {&kDerivative};
 
@@ -289,7 +301,6 @@ inline constexpr Entry kSensitivity{
     .routes = {Route::excursion},
     .rows = kSensitivityRows,
     .of_phases = true,
-    .of_levels = true,
     .without_system = true,
     .without_limit = true};
 

@@ -229,6 +229,12 @@ void renew_drag(model::Scene& scene);
 /// given, and those that its effects declare.
 [[nodiscard]] std::vector<model::Derivative> derivatives_of(const model::Scene& scene);
 
+/// How nodes of an order change with one of these parameters, by differences between values next to
+/// it, with elements that move along; null where they do not change, as with the drag, and of noise
+/// without them.
+[[nodiscard]] std::shared_ptr<const model::NodeChange>
+change_of_nodes(const model::Scene& scene, const model::Derivative& by, int order);
+
 /// What the headings of tables say of an effect of a scene, such as "tau = 1" and "delta = 0.125".
 [[nodiscard]] std::vector<std::string> heading(const Effect& effect, const model::Scene& scene);
 

@@ -139,6 +139,13 @@ struct BranchFriction {
   bool own_mu_s = false, own_mu_d = false;
 };
 
+/// How the nodes of a projection change with a parameter, by place: their forces, and the rates
+/// between them, to places.
+struct NodeChange {
+  std::vector<double> x;
+  std::vector<std::vector<LevelTable::Jump>> rates;
+};
+
 /// A parameter, and how the acceleration changes with it.
 struct Derivative {
   std::string_view option;  ///< that sets the parameter
@@ -146,6 +153,7 @@ struct Derivative {
   /// parameter is the correlation time of the noise, at a fixed number of levels, and changes the
   /// jumps.
   double (*acceleration)(const BranchFriction& branch, double v) = nullptr;
+  std::shared_ptr<const NodeChange> nodes = {};  ///< besides; null where there are no nodes
 
   [[nodiscard]] bool is_of_jumps() const { return acceleration == nullptr; }
 };

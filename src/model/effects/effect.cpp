@@ -201,6 +201,18 @@ std::vector<model::Derivative> derivatives_of(const model::Scene& s) {
   }
   append(frictions());
   append(drags());
+  if (!s.noise.gaussian) return all;
+  const auto by_nodes = [&all](std::string_view option) {
+    if (std::ranges::find(all, option, &model::Derivative::option) != all.end()) return;
+    all.push_back({model_option(option).name, [](const BranchFriction&, double) { return 0.0; }});
+  };
+  by_nodes("mu_s");
+  if (s.friction.mu_s_minus) by_nodes("mu_s_minus");
+  for (const auto& [name, value] : parameters_of(s)) {
+    const bool follows = is_given_by_another(s, name);
+    if (std::holds_alternative<double>(value) && noises().knows(s, name) && !follows)
+      by_nodes(name);
+  }
   return all;
 }
 

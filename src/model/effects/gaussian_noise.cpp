@@ -1,16 +1,24 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 #include <initializer_list>
+#include <map>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
 #include <vector>
 
+#include "../moved_nodes.hpp"
 #include "all.hpp"
 #include "csv_rows.hpp"
 #include "levels.hpp"
+#include "stickslip/base/errors.hpp"
 #include "stickslip/base/text.hpp"
 #include "stickslip/model/effect.hpp"
 
@@ -192,7 +200,102 @@ void read_ground(Given& given, model::Scene& scene) {
   make_named(given, scene, {kGroundFrequency, kGroundDamping}, deviation, ground_of);
 }
 
+// The options of a scene as files state them, with another value of one.
+class Stated final : public Given {
+ public:
+  Stated(const model::Scene& scene, std::string_view option, double value)
+      : all_(parameters_of(scene)) {
+    std::erase_if(all_, [&scene](const auto& each) {
+      return each.first != kDelta && is_given_by_another(scene, each.first);
+    });
+    for (auto& [name, stated] : all_) {
+      if (name == option) stated = value;
+    }
+  }
+  [[nodiscard]] bool has(const std::string& option) const override { return found(option); }
+  [[nodiscard]] double real(const std::string& option) const override {
+    return std::get<double>(*found(option));
+  }
+  [[nodiscard]] std::string text(const std::string& option) const override {
+    return std::get<std::string>(*found(option));
+  }
+  [[nodiscard]] std::optional<int> integer(const std::string&) const override { return {}; }
+  void refuse(const std::string& option, const std::string& why, const std::string&) override {
+    throw NotReached(fmt::format("no derivative by -{}: it {}", option, why));
+  }
+  [[nodiscard]] bool sound() const override { return true; }
+
+ private:
+  [[nodiscard]] const std::variant<double, std::string>* found(std::string_view option) const {
+    const auto at = std::ranges::find(all_, option, &model::Parameters::value_type::first);
+    return at == all_.end() ? nullptr : &at->second;
+  }
+
+  model::Parameters all_;
+};
+
+// The scene where a parameter of friction or of the noise has another value.
+model::Scene scene_at(model::Scene scene, std::string_view option, double value) {
+  const std::pair<std::string_view, double*> coefficients[] = {
+      {"mu_s", &scene.friction.mu_s},
+      {"mu_d", &scene.friction.mu_d},
+      {"mu_s_minus", scene.friction.mu_s_minus ? &*scene.friction.mu_s_minus : nullptr},
+      {"mu_d_minus", scene.friction.mu_d_minus ? &*scene.friction.mu_d_minus : nullptr}};
+  for (const auto& [name, coefficient] : coefficients) {
+    if (name != option) continue;
+    *coefficient = value;
+    return scene;
+  }
+  Stated given(scene, option, value);
+  std::erase_if(scene.own,
+                [all = scene](const auto& each) { return noises().knows(all, each.first); });
+  scene.noise = {.name = scene.noise.name};
+  read_effect(given, noises(), std::string(scene.noise.name), scene);
+  return scene;
+}
+
+// Of places of the same nodes below and above.
+model::NodeChange difference(const model::LevelTable& below, const model::LevelTable& above,
+                             double step) {
+  model::NodeChange change;
+  for (int i = below.lowest(); i <= below.highest(); ++i) {
+    const int other = i - below.lowest() + above.lowest();
+    change.x.push_back((above.at(other).x - below.at(i).x) / step);
+    std::map<int, double> rates;
+    below.for_each_jump(i, [&](int to, double rate) { rates[to - below.lowest()] -= rate / step; });
+    above.for_each_jump(other,
+                        [&](int to, double rate) { rates[to - above.lowest()] += rate / step; });
+    auto& row = change.rates.emplace_back();
+    for (const auto& [to, rate] : rates) row.push_back({to, rate});
+  }
+  return change;
+}
+
 }  // namespace
+
+bool is_given_by_another(const model::Scene& scene, std::string_view option) {
+  const auto is_intensity = [](const auto& each) { return each.first == kGroundIntensity; };
+  return option == kDelta || (option == kDeviation && std::ranges::any_of(scene.own, is_intensity));
+}
+
+std::shared_ptr<const model::NodeChange> change_of_nodes(const model::Scene& scene,
+                                                         const model::Derivative& by, int order) {
+  const bool of_friction = by.option.starts_with("mu_");
+  if (!scene.noise.gaussian || !(of_friction || noises().knows(scene, by.option))) return nullptr;
+  const auto stated = parameters_of(scene);
+  const auto at = std::ranges::find(stated, by.option, &model::Parameters::value_type::first);
+  const double value = std::get<double>(at->second),
+               scale = of_friction ? scene.noise.gaussian->deviation() : value;
+  // Rounding of rates leaves 1e-11 of their change, and what the differences leave out 1e-10.
+  const double step = 1e-5 * scale;
+  const auto nodes = [&](double there) {
+    const auto changed = scene_at(scene, by.option, there);
+    return model::moved_nodes({*scene.noise.gaussian, scene.thresholds()},
+                              {*changed.noise.gaussian, changed.thresholds()}, order);
+  };
+  return std::make_shared<model::NodeChange>(
+      difference(*nodes(value - step), *nodes(value + step), 2 * step));
+}
 
 const Effect kFilteredNoise{
     .word = "filtered",

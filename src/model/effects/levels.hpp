@@ -31,6 +31,8 @@ struct States {
 void make_continuous(Given& given, model::Scene& scene,
                      const std::vector<model::CovarianceTerm>& terms, const char* option,
                      const std::string& fix);
+/// Whether a number that files state of a Gaussian noise is fixed by others, or is none.
+[[nodiscard]] bool is_given_by_another(const model::Scene& scene, std::string_view option);
 /// Its nodes. Whether there are any.
 [[nodiscard]] bool complete_continuous(Given& given, model::Scene& scene);
 

@@ -139,6 +139,9 @@ void append_averages(const StationaryDistribution& distribution,
 /// forward solve for each M. With a single static level mean_stick takes no solve, and has no
 /// derivative but that by tau.
 ///
+/// Nodes of noise of continuous paths move with the points at which functions are not smooth, and
+/// the rates between them change, at rest as well: dL is then that of the nodes.
+///
 /// Appends dKEY_dPARAMETER for each KEY of append_sticking() and, with `moments`, of
 /// append_moments(), which takes three more solves; effects::derivatives_of has the parameters of a
 /// scene. Collective.
