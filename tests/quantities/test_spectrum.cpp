@@ -256,6 +256,25 @@ TEST_CASE("spectrum: width and variance of a known one, with the errors of its v
   }
 }
 
+// S = 1/((w^2 - omega^2)^2 + (g omega)^2), whose variance is 1/(2 g w^2), has a narrow peak.
+TEST_CASE("spectrum: the variance of a narrow peak is found in any unit of time") {
+  std::vector<double> in_units;
+  for (const double unit : {1.0, std::pow(2.0, -30), std::pow(2.0, 20)}) {
+    const double w = 0.7 / unit, g = 0.01 / unit;
+    const auto s = [=](double omega) {
+      return 1 / (std::pow((w - omega) * (w + omega), 2) + std::pow(g * omega, 2));
+    };
+    const auto variance = quantities::shape_of(s, unit, 0, 1e-5).variance;
+    const double known = 1 / (2 * g * w * w);
+    INFO("unit " << unit << " error " << variance.error / known);
+    CHECK(variance.value == Approx(known).epsilon(1e-9));
+    CHECK(variance.error < 1e-4 * known);
+    in_units.push_back(variance.value / std::pow(unit, 3));
+  }
+  CHECK(in_units[1] == Approx(in_units[0]).epsilon(1e-14));
+  CHECK(in_units[2] == Approx(in_units[0]).epsilon(1e-14));
+}
+
 TEST_CASE("spectrum: one that never falls to half has no width") {
   const auto shape = quantities::shape_of([](double) { return 1.0; }, 1, 0, 0);
   CHECK(std::isnan(shape.full_width.value));
