@@ -122,11 +122,11 @@ Parts parts_at(double lambda, const Sums<Discounts>& m) {
   const Smooth apart =
       (one_minus * plus - one_plus * minus) / (s * (s + lambda * one_plus * one_minus));
   const Smooth mu = a * one_minus * apart, below = -1 * b * one_plus * apart;
-  Parts parts{m.estimate(plus), m.estimate(minus), m.estimate(pi), m.estimate(mu),
-              m.estimate(below)};
+  const auto estimate = [&m](const Smooth& f) { return m.estimate(f, {&Discounts::other}); };
+  Parts parts{estimate(plus), estimate(minus), estimate(pi), estimate(mu), estimate(below)};
   if (lambda == 0) return parts;
-  parts.u = m.estimate(pi / lambda + mu);
-  parts.u_minus = m.estimate(pi / lambda + below);
+  parts.u = estimate(pi / lambda + mu);
+  parts.u_minus = estimate(pi / lambda + below);
   return parts;
 }
 
@@ -156,8 +156,9 @@ Estimates resolvent_of(const model::Observable& f, const Tally& tally,
 // What does not depend on the observable.
 Estimates ends_of(const Tally& tally, const std::vector<Sums<Discounts>>& sums) {
   const auto end = [&](const cases::Row& row, std::size_t side, double Discounts::*which) {
-    return array(row, tally.question().lambda,
-                 [&](std::size_t n) { return sums[n].estimate(sums[n].at(side, which)); });
+    return array(row, tally.question().lambda, [&](std::size_t n) {
+      return sums[n].estimate(sums[n].at(side, which), {&Discounts::same, &Discounts::other});
+    });
   };
   Estimates all{end(cases::kHPlus, 0, &Discounts::same), end(cases::kHMinus, 0, &Discounts::other),
                 end(cases::kWOne, 0, &Discounts::one)};
@@ -237,7 +238,8 @@ void from_cycles(Tally& tally, std::size_t number) {
     const auto mean = [&](const cases::Row& row, const Side& from, double Visits::*which,
                           const model::Observable* of = nullptr) {
       const auto value = [&](std::size_t n) {
-        return from[n].estimate(from[n].at(0, which) / from[n].at(0, &Visits::count));
+        return from[n].estimate(from[n].at(0, which) / from[n].at(0, &Visits::count),
+                                {&Visits::up, &Visits::down});
       };
       all.push_back(array(row, lambda, value, of));
     };

@@ -2,6 +2,7 @@
 
 #include <boost/math/distributions/binomial.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -58,6 +59,10 @@ Estimate proportion(double successes, double trials) {
       successes >= trials ? 1 : Binomial::find_upper_bound_on_p(trials, successes, tail, kind);
   return {successes / trials, low, high};
 }
+
+// Numbers, and shares of all, of alike samples that would have the variance of a mean beside zeros.
+// Where they are fewer, the variance itself is hardly known: rare samples may be missing in it.
+constexpr double kFewCarry = 20, kFewOfAll = 0.1;
 
 constexpr double kSmallest = 1e-8, kLargest = 1e5;  // sizes of y in units of the scale
 constexpr std::size_t kKept = 3;
@@ -124,6 +129,30 @@ double Means::variance(const Smooth& f) const {
 Estimate Means::estimate(const Smooth& f) const {
   const double half = kNormalQuantile * std::sqrt(variance(f)), value = f.value.real();
   return {value, value - half, value + half};
+}
+
+double Means::missed(std::size_t side, std::size_t n) const {
+  const Comoments& of = sides_[side];
+  std::vector<double> weight(of.size());
+  weight[n] = 1;
+  const double p = of.mean(n), variance = of.variance_of_mean(weight);
+  const double few = std::min(kFewCarry, kFewOfAll * of.count());
+  if (!(p < 1) || (p > 0 && p * p >= few * variance)) return 0;
+  const double half = proportion(p * of.count(), of.count()).high - p;
+  return std::max(0.0, half - kNormalQuantile * std::sqrt(variance));
+}
+
+Estimate Means::estimate(const Smooth& f, const std::vector<std::size_t>& shares) const {
+  Estimate e = estimate(f);
+  const std::size_t size = sides_[0].size();
+  for (std::size_t at = 0; at < f.slope.size(); ++at) {
+    const double slope = std::abs(f.slope[at].real());
+    if (slope == 0 || std::ranges::find(shares, at % size) == shares.end()) continue;
+    const double more = slope * missed(at / size, at % size);
+    e.low -= more;
+    e.high += more;
+  }
+  return e;
 }
 
 Comoments Histogram::moments(std::size_t side, const Weight& weight) const {

@@ -112,8 +112,9 @@ void Tally::mean(const cases::Row& row, const std::vector<double>& abscissa,
     all.push_back(sums([of, s](const Excursion& e) { return Single{of(e, s)}; }));
   }
   report([=, &row](const Tally&) -> Estimates {
-    return {array(row, abscissa,
-                  [&](std::size_t n) { return all[n].estimate(all[n].overall(&Single::x)); })};
+    return {array(row, abscissa, [&](std::size_t n) {
+      return all[n].estimate(all[n].overall(&Single::x), {&Single::x});
+    })};
   });
 }
 

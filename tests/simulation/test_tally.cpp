@@ -394,6 +394,24 @@ TEST_CASE("tally: shares over both sides are those of a long path") {
   check_proportion(estimate(t, "entry_law_minus", 2), 0, 5);
 }
 
+// Of exp(-0.3 T) three long sliding phases of 20000 longer ones make all: shorter ones may be
+// missed.
+TEST_CASE("tally: a transform that few samples carry has the interval of what they may miss") {
+  constexpr int count = 20000;
+  const auto of_slides = [](const std::function<double(int)>& slide) {
+    std::vector<Excursion> all(count);
+    for (int n = 0; n < count; ++n) all[static_cast<std::size_t>(n)].slide = slide(n);
+    const auto tally = of(all, {.quantities = {Quantity::laplace}, .lambda = {0.3}});
+    return estimate(tally, "F_slide", 0);
+  };
+  const auto few = of_slides([](int n) { return n % 7000 == 0 ? 20.0 : 100.0; });
+  CHECK(few.value == Approx(3 * std::exp(-6.0) / count).epsilon(1e-6));
+  CHECK(few.high == Approx(boost::math::ibeta_inv(0.5, count, 0.975)).epsilon(0.02));
+  CHECK(few.value - few.low == Approx(few.high - few.value).epsilon(1e-9));
+  const auto many = of_slides([](int n) { return n % 70 == 0 ? 20.0 : 100.0; });
+  CHECK(many.high == Approx(many.value * (1 + kNormal * std::sqrt(70.0 / count))).epsilon(0.01));
+}
+
 // Many samples, where both intervals are the same.
 TEST_CASE("tally: intervals of shares over both sides are those of means") {
   const auto two = two_sides();

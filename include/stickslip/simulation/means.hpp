@@ -5,6 +5,7 @@
 #include <complex>
 #include <cstddef>
 #include <functional>
+#include <initializer_list>
 #include <span>
 #include <type_traits>
 #include <utility>
@@ -116,8 +117,16 @@ class Means {
   /// Of the real part of f, as all that follows.
   [[nodiscard]] double variance(const Smooth& f) const;
   [[nodiscard]] Estimate estimate(const Smooth& f) const;
+  /// The same, where the means with these numbers are of samples from 0 to 1 which few may carry,
+  /// such as exp(-lambda T) at a large lambda: the interval then covers what samples of this count
+  /// miss.
+  [[nodiscard]] Estimate estimate(const Smooth& f, const std::vector<std::size_t>& shares) const;
 
  private:
+  /// By how much Jeffreys' interval for as many trials as samples reaches beyond that of the delta
+  /// method, where few samples carry mean n from 0 to 1; 0 elsewhere.
+  [[nodiscard]] double missed(std::size_t side, std::size_t n) const;
+
   std::span<const Comoments> sides_;
   Sampled sampled_;
 };
@@ -166,6 +175,13 @@ class Sums : public Means {
   }
   [[nodiscard]] Smooth overall(double Sample::*which, double parity = 1) const {
     return Means::overall(column(which), parity);
+  }
+  using Means::estimate;
+  [[nodiscard]] Estimate estimate(const Smooth& f,
+                                  std::initializer_list<double Sample::*> shares) const {
+    std::vector<std::size_t> columns;
+    for (const auto which : shares) columns.push_back(column(which));
+    return Means::estimate(f, columns);
   }
   /// What a long path gathers in a unit of time, given what it gathers in an excursion. The sample
   /// has the durations of both phases.
