@@ -135,6 +135,19 @@ class Powers {
     return false;
   }
 
+  // Whether a part of the vectors falls so slowly that they only seem to converge: they begin alike
+  // in both directions, and what is not so comes to light behind all that falls fast. What rounding
+  // leaves does not fall steadily.
+  bool hides_a_slow_part() {
+    constexpr int steps = 4;
+    constexpr double rounding = 1e-10, slow = 0.2, steady = 0.2;
+    for (int n = 0; n < steps; ++n) step(false);
+    const double before = fall_;
+    step(false);
+    return off_ > rounding && fall_ > slow && fall_ < 1 &&
+           std::abs(fall_ - before) < steady * (1 - fall_);
+  }
+
   // As far as rounding lets them.
   void finish() {
     constexpr int most = 60;
@@ -148,6 +161,8 @@ class Powers {
     return dot(vectors_.left, moving) / dot(vectors_.left, vectors_.right);
   }
   [[nodiscard]] double theta() const { return theta_; }
+  // All changes to come, over the last one.
+  [[nodiscard]] double left() const { return 1 / (1 - std::min(fall_, 0.99)); }
   // Distance from theta to the next eigenvalue, by how fast its eigenvectors vanish.
   [[nodiscard]] double gap() const {
     return std::abs(key_.lambda - theta_) * (1 / std::clamp(fall_, 1e-3, 0.99) - 1);
@@ -251,10 +266,12 @@ constexpr double kNearer = 1e-2;  // of the gap, away from theta
 // From a z that is above theta, which is the eigenvalue nearest to any such z, down to a hundredth
 // of the gap above it. Branches of eigenvalues of which one grows by sliding and another by resting
 // cross almost without coupling, so that no eigenvalue near to one at another s need be theta.
-// Returns that hundredth; none if no z above theta has been found.
+// Returns that hundredth; none if no z above theta has been found. Of a gap that only seemed to be
+// the smallest one it returns a hundredth where it finds no smaller one.
 std::optional<double> approach(Powers& powers, double below, double step, double top) {
   constexpr int most = 40, steps = 8;
   double z = below + step;
+  std::optional<std::pair<double, double>> found;  // z and that hundredth
   for (; !powers.is_above(z); z = below + step) {
     if (z > top) return {};
     step = 2 * (z - below);
@@ -267,14 +284,19 @@ std::optional<double> approach(Powers& powers, double below, double step, double
                  next = std::max(theta + away, below + 0.1 * (z - below));
     if (powers.is_above(next)) {
       z = next;
-      if (near && z == theta + away) return away;
+      if (near && z == theta + away) {
+        found = {z, away};
+        if (!powers.hides_a_slow_part()) return away;
+      }
     } else {
-      if (near && z - next < away) return {};  // it is not there that u turns negative
+      if (near && z - next < away) break;  // it is not there that u turns negative
       below = next;
       powers.move(z);
     }
   }
-  return {};
+  if (!found) return {};
+  powers.move(found->first);
+  return found->second;
 }
 
 // Next to theta each step makes the vectors a hundred times more accurate. The last one, which
@@ -293,7 +315,8 @@ std::optional<TiltedGrowth> growth(generator::Systems& systems, double s, bool t
     if (known.empty() || !powers.is_above(known[0].z.real()) || !powers.converges(steps))
       return false;
     const double gap = known[1].z.real() / kNearer;
-    return std::abs(powers.theta() - known[0].z.real()) < share * gap;
+    return std::abs(powers.theta() - known[0].z.real()) < share * gap &&
+           !powers.hides_a_slow_part();
   };
   if (!next_to_theta()) {
     known.clear();
@@ -304,10 +327,11 @@ std::optional<TiltedGrowth> growth(generator::Systems& systems, double s, bool t
   powers.finish();
   const double theta = powers.theta(), velocity = powers.velocity();
   powers.step(true);
+  const double left = powers.left();
   known[0].z = powers.theta() + known[1].z;
   const double cut = truncated ? held(powers.a(), powers.vectors()) * v_max : 0;
-  const auto with_error = [](double now, double before, double more) {
-    return Uncertain{now, std::abs(now - before) + more};
+  const auto with_error = [left](double now, double before, double more) {
+    return Uncertain{now, left * std::abs(now - before) + more};
   };
   return TiltedGrowth{s == 0 ? Uncertain{} : with_error(powers.theta(), theta, cut * std::abs(s)),
                       with_error(powers.velocity(), velocity, cut)};

@@ -204,3 +204,20 @@ TEST_CASE("large deviations: states that no body reaches are left out", "[real]"
     CHECK(theta >= -leaving);
   }
 }
+
+// Two speeds v = -1 and 1, between which the noise jumps at the rate r: theta = sqrt(r^2 + (s v)^2)
+// - r, but for the time that a body takes to turn. Vectors begin alike in both directions.
+TEST_CASE("large deviations: bodies that rarely turn", "[real]") {
+  constexpr double r = 1e-4;
+  const auto s = on_levels(1, 0.5, 1, {{-1.5, r, 0}, {1.5, 0, r}});
+  for (double tilt : {1e-6, 1e-5, 1e-4, 1e-3}) {
+    const double root = std::hypot(r, tilt);
+    const auto found = values(asking(s, {tilt}, 1e-4));
+    const auto &theta = found.at("theta"), &velocity = found.at("tilted_velocity");
+    INFO("tilt " << tilt << ": " << theta.value[0] << " +- " << theta.error[0] << ", "
+                 << velocity.value[0] << " +- " << velocity.error[0]);
+    CHECK(theta.value[0] == Approx(tilt * tilt / (root + r)).epsilon(1e-3));
+    CHECK(velocity.value[0] == Approx(tilt / root).epsilon(1e-3));
+    CHECK(velocity.error[0] < 1e-4 * velocity.value[0]);
+  }
+}
