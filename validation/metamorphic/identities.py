@@ -60,7 +60,10 @@ def autocovariance(ask, options, random):
 def large_deviations(ask, options, random):
     """theta'(0) = E[V], theta''(0) = S_0, and theta by integration of theta'."""
     end = random.choice((-1, 1)) * 10 ** random.uniform(-1, 1.5)
-    h = 1e-3 * abs(end)
+    f = ask("moments,spectrum", omega=0.0)
+    variance = float(f["E_V2"].value - f["E_V"].value ** 2)
+    # Where V rarely changes its sign, a tilt of sqrt(Var V)/S_0 already makes it keep one.
+    h = min(1e-3 * abs(end), 1e-2 * math.sqrt(variance) / float(f["S_0"].value))
     f = ask("moments,spectrum,large_deviation", tilt=grid(end) + (-2 * h, -h, h, 2 * h), omega=0.0)
     v = f["tilted_velocity"]
     yield "theta(0)", f["theta"][0], 0
