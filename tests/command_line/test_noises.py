@@ -178,7 +178,7 @@ class Noises(Case):
         ground = {"ground_frequency": 15.6, "ground_damping": 0.6, "noise_deviation": 2, "mu_s": 1.5, "mu_d": 0.75,
                   "drag_coefficient": 1}
         cases = ((found, at, {"tau": 1, "drag_coefficient": -1}),
-                 (self.summary(*self.GROUND, "-quantities", "sticking,sensitivity", "-degree", "3", status=3)["results"],
+                 (self.summary(*self.GROUND, "-quantities", "sticking,sensitivity", "-degree", "4", status=3)["results"],
                   ground, {"ground_frequency": 1, "drag_coefficient": 1}))
         for results, values, times in cases:
             for powers in (dict.fromkeys(("noise_deviation", "mu_s", "mu_d"), 1), times):
