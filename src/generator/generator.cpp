@@ -92,7 +92,7 @@ void require_occupation(Vec nu, const model::Process& process) {
 KolmogorovOperator::KolmogorovOperator(MPI_Comm comm, const Discretisation& discretisation,
                                        Shift<PetscScalar> shift, Symmetry symmetry,
                                        StaticPhase static_phase,
-                                       std::optional<model::Derivative> derivative)
+                                       const std::optional<model::Derivative>& derivative)
     : data_(std::make_shared<MatrixData>(MatrixData{
           discretisation,
           StateSpace(comm, discretisation, symmetry, static_phase != StaticPhase::killing),

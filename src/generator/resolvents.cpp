@@ -254,7 +254,7 @@ FactorCost sparse_cost(Factors factors, Scheme scheme, double unknowns, double n
 KolmogorovOperator assemble(MPI_Comm comm, const Discretisation& discretisation,
                             Shift<PetscScalar> shift, Symmetry symmetry, StaticPhase static_phase,
                             linalg::SolverStatistics& statistics,
-                            std::optional<model::Derivative> derivative) {
+                            const std::optional<model::Derivative>& derivative) {
   const linalg::PhaseTimer timer("assembly", statistics.assembly_seconds);
   KolmogorovOperator a(comm, discretisation, shift, symmetry, static_phase, derivative);
   linalg::SolverStatistics made;

@@ -22,7 +22,7 @@ class RowAssembler {
   RowAssembler(const Discretisation& discretisation, const StateSpace& states,
                Shift<PetscScalar> shift, StaticPhase static_phase,
                std::optional<model::Derivative> derivative)
-      : derivative_(derivative),
+      : derivative_(std::move(derivative)),
         noise_(*discretisation.noise),
         chain_(discretisation.process.noise),
         upper_{discretisation.process, noise_, *discretisation.velocities},

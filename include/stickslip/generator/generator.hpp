@@ -74,7 +74,7 @@ class KolmogorovOperator {
   /// the derivative of the process. Collective. O(local nonzeros).
   KolmogorovOperator(MPI_Comm comm, const Discretisation& discretisation, Shift<PetscScalar> shift,
                      Symmetry symmetry, StaticPhase static_phase,
-                     std::optional<model::Derivative> derivative = {});
+                     const std::optional<model::Derivative>& derivative = {});
 
   [[nodiscard]] const Discretisation& discretisation() const { return data_->discretisation; }
   [[nodiscard]] const StateSpace& states() const { return data_->states; }

@@ -29,7 +29,7 @@ inline const std::string kSlidePrefix = "slide_";
                                           Shift<PetscScalar> shift, Symmetry symmetry,
                                           StaticPhase static_phase,
                                           linalg::SolverStatistics& statistics,
-                                          std::optional<model::Derivative> derivative = {});
+                                          const std::optional<model::Derivative>& derivative = {});
 
 /// lambda - L with its solver, by default of the type default_pc_type().
 class System {
