@@ -356,7 +356,7 @@ Layout layout_of(const Dense& a, double deviation, const Thresholds& thresholds,
 }
 
 // The generator on the nodes of a layout.
-Projection projection_on(const Layout& grid, const GaussianNoise& noise, double peak,
+Projection projection_on(const Layout& grid, const GaussianNoise& noise,
                          const Thresholds& thresholds) {
   const auto kept = std::make_shared<const AlongForce>(grid.mesh, grid.cuts, normal_weight);
   const AlongForce& x = *kept;
@@ -364,7 +364,7 @@ Projection projection_on(const Layout& grid, const GaussianNoise& noise, double 
   Projection made;
   made.deviation = noise.deviation();
   made.intensity = noise.power_spectral_density(0) / 2;
-  made.peak_intensity = peak / 2;
+  made.peak_intensity = noise.largest_density() / 2;
   made.step = grid.finest * noise.deviation();
   made.rate = 2 * noise.matrix()(0, 0) / (grid.finest * grid.finest);
   made.even = thresholds.alike_both_ways();
@@ -420,7 +420,7 @@ Projection GaussianNoise::projection(const Thresholds& thresholds, int order) co
     throw UnfitTable(terms_.size(), fmt::format("the terms take {} nodes, and at most {} are taken",
                                                 grid.nodes(), kMostNodes));
   }
-  return projection_on(grid, *this, peak_, thresholds);
+  return projection_on(grid, *this, thresholds);
 }
 
 std::shared_ptr<const LevelTable> moved_nodes(const Thresholded& from, const Thresholded& to,
@@ -439,8 +439,8 @@ std::shared_ptr<const LevelTable> moved_nodes(const Thresholded& from, const Thr
   for (auto* places : {&grid.mesh.ends, &grid.cuts}) {
     for (double& z : *places) z = moved(z, marks);
   }
-  return std::make_shared<const LevelTable>(LevelTable::of(
-      projection_on(grid, to.noise, to.noise.power_spectral_density(0), to.thresholds)));
+  return std::make_shared<const LevelTable>(
+      LevelTable::of(projection_on(grid, to.noise, to.thresholds)));
 }
 
 }  // namespace stickslip::model

@@ -43,6 +43,7 @@ class GaussianNoise final : public Projector {
   [[nodiscard]] double power_spectral_density(double omega) const {
     return model::power_spectral_density(terms_, omega);
   }
+  [[nodiscard]] double largest_density() const { return peak_; }  ///< of the spectrum
 
   /// Whether the nodes of an order are at most 6000.
   [[nodiscard]] bool fits(const Thresholds& thresholds, int order) const override;
